@@ -1,0 +1,103 @@
+// The estimator: the paper's particle filter over SE(3), one observation at a time.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/gradient_step.hpp"
+#include "core/method.hpp"
+#include "core/modes.hpp"
+#include "core/observation.hpp"
+#include "core/particles.hpp"
+#include "core/pose_solver.hpp"
+#include "core/start.hpp"
+#include "core/view_generator.hpp"
+
+namespace nearpose {
+
+struct EstimatorOptions {
+    Method method = method_default();
+    int num_particles = 200;
+    int num_threads = 0;  // 0: as many as the machine has
+    std::uint64_t seed = 1;
+    int min_candidates = 50;  // pixels; fewer show nothing of the object
+};
+
+// Throws std::invalid_argument naming field, value and bound.
+void validate(const EstimatorOptions& options);
+
+enum class UpdateStatus {
+    kEstimated,  // from this observation
+    kPredicted,  // the observation shows nothing of the object; the pose before, moved by the control, stands in
+    kNoPose,     // nothing was seen yet
+};
+
+const char* to_string(UpdateStatus status);
+
+struct UpdateSeconds {
+    StageSeconds stages;                                                 // summed over threads
+    double start = 0.0, particles = 0.0, refinement = 0.0, total = 0.0;  // elapsed
+};
+
+struct UpdateResult {
+    UpdateStatus status = UpdateStatus::kNoPose;
+    Pose camera_from_object;                 // the MAP; meaningless where there is no pose
+    Matrix6d covariance = Matrix6d::Zero();  // of the twist of camera_from_object * exp(twist), rotation first
+    double cost = 0.0;                       // of the MAP: the pixel cost in 0..1, or epsilon [m^2]
+    double score = 0.0;                      // larger is better: 1 - pixel cost, or 1 / (1 + epsilon / sigma^2)
+    std::vector<Mode> modes;                 // refined, best first; the default method's
+    double effective_sample_size = 0.0;      // 1..number of particles, after weighting
+    bool resampled = false;                  // before this update's propagation
+    bool mode_replaced = false;              // another mode explains the observation better than the tracked one
+    int points_observed = 0;                 // candidate pixels
+    StepCounts counts;
+    UpdateSeconds seconds;
+};
+
+// One estimator belongs to one caller thread; several estimators may run at once. The same seed and observations give
+// the same bits for any number of threads.
+class PoseEstimator {
+  public:
+    // The constructor does all slow set-up. Throws std::invalid_argument for options out of bounds.
+    PoseEstimator(std::shared_ptr<const ViewGenerator> views, std::shared_ptr<const PoseSolver> solver,
+                  const EstimatorOptions& options);
+
+    // Takes in one observation. `now_from_before` is the measured camera motion since the last update (it maps camera
+    // coordinates of the frame before to those of this one); nothing where it was not measured. Never throws for data.
+    UpdateResult update(const Observation& observation, const std::optional<Pose>& now_from_before);
+
+    // Starts over: without a pose, or around one with a spread (standard deviations about the model's centre).
+    void reset();
+    void reset(const Pose& camera_from_object, const Diffusion& spread);
+
+    const ParticleSet& particles() const { return particles_; }
+
+  private:
+    void predict(const std::optional<Pose>& now_from_before, UpdateResult& result);
+    void start(const Observation& observation, UpdateResult& result);
+    void move_particles(const Observation& observation, UpdateResult& result);
+    void take_map(const Observation& observation, UpdateResult& result);
+    void take_refined_mode(const Observation& observation, UpdateResult& result);
+    std::vector<Mode> modes_to_refine(const Observation& observation, UpdateResult& result) const;
+    std::vector<Mode> best_rivals(const std::vector<Mode>& leaders, const Observation& observation,
+                                  UpdateResult& result) const;
+    std::vector<MovedParticle> move_all(const std::vector<Pose>& poses, const Observation& observation,
+                                        const GradientStep& step, RandomPurpose purpose, UpdateResult& result) const;
+    PixelGrid grid_for(const Observation& observation, int max_rays) const;
+    ModeDistance mode_distance() const;
+    void describe_estimate(const Observation& observation, UpdateResult& result) const;
+
+    std::shared_ptr<const ViewGenerator> views_;
+    std::shared_ptr<const PoseSolver> solver_;
+    EstimatorOptions options_;
+    std::vector<SurfaceAnchor> anchors_;
+    ParticleSet particles_;
+    std::optional<Mode> tracked_;     // the estimate of the last update
+    std::vector<double> last_costs_;  // of the particles
+    std::uint64_t step_ = 0;          // updates so far; addresses the random streams
+    int frames_held_ = 0;             // updates since the tracked mode was last replaced
+};
+
+}  // namespace nearpose

@@ -1,0 +1,52 @@
+// The observation model: how well a pose explains an observation. Costs are negative log-likelihoods up to scale and
+// offset: smaller is better.
+#pragma once
+
+#include "core/correspondence.hpp"
+#include "core/observation.hpp"
+#include "core/view_generator.hpp"
+
+namespace nearpose {
+
+// The paper's cost: epsilon = (m / n) * MSE over n matched pairs of a view of m points [m^2]. Without any pair it is
+// (m + 1) * max_distance_m^2, worse than any value with pairs.
+double overlap_scaled_mse(const Correspondences& pairs, const Pose& camera_from_object, std::size_t num_view_points,
+                          double max_distance_m);
+
+// The paper does not say how epsilon becomes a likelihood for the effective sample size. A pair's squared residual is
+// Gaussian with the sensor's variance where the pair is right, and that of a chance match within the gate, 3/5 gate^2
+// (uniform in a ball), where it is not; the MSE mixes both, so the likelihood is exp(-epsilon / (2 (sigma^2 + 3/5
+// gate^2))). Returns the negative log-likelihood.
+double negative_log_likelihood(double overlap_scaled_mse_m2, double sensor_sigma_m, double max_distance_m);
+
+struct PixelCostOptions {
+    double truncation_sigmas = 3.0;  // a residual beyond it is no better than any other
+    double extra_sigma_m = 0.0;      // added in quadrature to the sensor's noise: how far off a pose may still be [m]
+    double occluded_cost = 0.3;      // of model behind something measured: it may be hidden
+    double unexplained_cost = 0.5;   // of a measured pixel that no model covers, where nothing is segmented
+    double independent_rays = 40.0;  // neighbouring rays share the sensor's errors: so many count as independent
+};
+
+// Verdicts of the pixels of one view.
+struct PixelCost {
+    double cost = 1.0;       // mean over the judged pixels, in 0..1
+    int judged = 0;          // pixels with model or candidate, and depth
+    int agreeing = 0;        // model and depth agree within the truncation
+    int missing_model = 0;   // candidate pixels without model
+    int model_in_front = 0;  // model before the measured surface: the sensor looked through it
+    int model_behind = 0;    // model behind the measured surface
+};
+
+// The default method's cost: each ray of the grid compares the model's depth z_m with the measured z_o, r = (z_o - z_m)
+// cos(normal, ray) / sigma. Where the observation is segmented:
+//   candidate pixel: min(r^2 / truncation^2, 1); no model there: 1
+//   background pixel: model in front of it: 1; behind it or on it: occluded_cost
+// and where it is not, model behind something is no better than no model, which costs `unexplained_cost`. Pixels
+// without depth say nothing. `view` must have been generated at `camera_from_object` with observed.camera.
+PixelCost pixel_cost(const View& view, const Pose& camera_from_object, const ObservedGrid& observed,
+                     const PixelCostOptions& options);
+
+// Of a pose with that cost: independent_rays * truncation^2 / 2 * cost.
+double negative_log_likelihood(const PixelCost& cost, const PixelCostOptions& options);
+
+}  // namespace nearpose

@@ -1,0 +1,65 @@
+// Which variant of each step the estimator uses, and with which numbers. Lengths are fractions of the model's diameter
+// (of its box) where they scale with the part; nothing is tuned to one object.
+#pragma once
+
+#include "core/likelihood.hpp"
+#include "core/modes.hpp"
+
+namespace nearpose {
+
+enum class Association { kNearest, kProjective };
+enum class Cost { kOverlapMse, kPixels };
+enum class Start { kSphere, kSurface };
+
+// The gradient step of one particle: a few rounds of correspondence and least squares.
+struct GradientStep {
+    Association association = Association::kProjective;
+    double max_distance_diameters = 0.1;  // of a pair
+    double extra_sigma_diameters = 0.01;  // added to the sensor's noise: how far off the pose may still be
+    double max_normal_angle_rad = 0.0;    // between a pair's normals; 0: not checked
+    int consensus_draws = 0;              // of the sample-consensus rejection; 0: none
+    double consensus_distance_diameters = 0.02;
+    int rounds = 3;
+    double step_size = 1.0;  // gamma: the fraction of each solve that is taken, along the geodesic
+    int max_rays = 768;      // of the view
+};
+
+// What the default method adds to the paper's filter. Each part is off at 0.
+struct Refinement {
+    int modes = 0;                               // best distinct modes of the swarm that are refined every frame
+    int rounds = 5;                              // each with a view cast anew
+    int max_rays = 6000;                         // of a refined view
+    double first_extra_sigma_diameters = 0.006;  // halved every round
+    double cost_sigma_diameters = 0.002;         // tolerance of the cost that decides between modes
+    double challenge_ratio = 0.9;                // a mode below this share of the tracked mode's cost replaces it
+    int rivals = 0;          // poses that the best modes may be mistaken for, tried as further modes
+    int rival_period = 10;   // frames between such trials once one mode holds
+    int rival_modes = 3;     // of them that are refined
+    int frames_to_hold = 5;  // frames without replacement after which one mode holds
+};
+
+struct Method {
+    Start start = Start::kSphere;
+    int start_candidates = 0;  // random starts of which the best become the particles; 0: the particles themselves
+    GradientStep start_step;   // taken by each of them
+    GradientStep step;         // taken by each particle in each frame
+    Cost cost = Cost::kPixels;
+    PixelCostOptions pixel_cost;
+    Refinement refinement;
+    double diffusion_rotation_rad = 0.03;
+    double diffusion_diameters = 0.008;
+    double resample_below = 0.5;  // effective sample size, as a fraction of the particles
+};
+
+// The paper to the letter: sphere start, nearest neighbours within 30 mm on a part of 0.43 m, sample consensus, three
+// rounds, overlap-scaled mean squared error, MAP = smallest weight. Its least squares are point-to-point.
+Method method_paper();
+
+// Projective point-to-plane steps, a cost per pixel, many starts on the first frame, the best modes refined and
+// challenged by their rivals.
+Method method_default();
+
+// Throws std::invalid_argument naming field, value and bound.
+void validate(const Method& method);
+
+}  // namespace nearpose

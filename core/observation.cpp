@@ -1,0 +1,183 @@
+#include "core/observation.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "core/check.hpp"
+
+namespace nearpose {
+namespace {
+
+void check_size(const std::string& what, int width, int height, std::size_t count, const PinholeCamera& camera) {
+    const bool consistent = count == static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    if (consistent && width == camera.width && height == camera.height) return;
+    throw std::invalid_argument("observation: the " + what + " has " + std::to_string(width) + " x " +
+                                std::to_string(height) + " pixels, the camera " + std::to_string(camera.width) + " x " +
+                                std::to_string(camera.height));
+}
+
+bool in_range(double depth_m, const SensorModel& sensor) {
+    return depth_m >= sensor.min_range_m && depth_m <= sensor.max_range_m;  // false for NaN
+}
+
+// Of the cloud's own sampling: the coarsest stride at which neighbouring pixels of its projection are all but filled.
+int stride_that_the_cloud_fills(const std::vector<Eigen::Vector3f>& points, const PinholeCamera& camera) {
+    constexpr int kMaxStride = 32;
+    for (int stride = 1; stride < kMaxStride; stride *= 2) {
+        const PinholeCamera coarse = camera_of({0, 0, stride, camera.width / stride, camera.height / stride}, camera);
+        std::vector<char> filled(static_cast<std::size_t>(coarse.width) * coarse.height, 0);
+        for (const Eigen::Vector3f& point : points) {
+            const Eigen::Vector2d uv = coarse.project(point.cast<double>());
+            if (const int pixel = coarse.pixel_at(uv.x(), uv.y()); pixel >= 0) filled[pixel] = 1;
+        }
+        int both = 0, one = 0;
+        for (std::size_t p = 0; p + 1 < filled.size(); ++p) {
+            if (!filled[p]) continue;
+            ++one;
+            both += filled[p + 1];
+        }
+        if (one == 0 || both > 0.8 * one) return stride;
+    }
+    return kMaxStride;
+}
+
+}  // namespace
+
+Eigen::Vector3f Observation::normal_at(int pixel, int reach) const {
+    const int u = pixel % camera_.width, v = pixel / camera_.width;
+    if (u < reach || v < reach || u + reach >= camera_.width || v + reach >= camera_.height) return {0, 0, 0};
+    const int left = pixel - reach, right = pixel + reach;
+    const int above = pixel - reach * camera_.width, below = pixel + reach * camera_.width;
+    const float depth = depth_m_[pixel];
+    // A step of more than the surface's reach in depth per pixel of width is an edge, not a slope.
+    const double max_step_m = 4.0 * reach * depth / camera_.fx;
+    for (const int neighbour : {left, right, above, below}) {
+        if (states_[neighbour] == PixelState::kNoDepth || std::abs(depth_m_[neighbour] - depth) > max_step_m)
+            return {0, 0, 0};
+    }
+    const Eigen::Vector3d across = point_at(right) - point_at(left);
+    const Eigen::Vector3d down = point_at(below) - point_at(above);
+    const Eigen::Vector3d towards_camera = down.cross(across);  // x right, y down, z forward: this one points to -z
+    const double length = towards_camera.norm();
+    if (!(length > 0.0)) return {0, 0, 0};
+    return (towards_camera / length).cast<float>();
+}
+
+void Observation::find_candidates() {
+    PixelBox box{camera_.width, camera_.height, 0, 0};
+    for (int v = 0, pixel = 0; v < camera_.height; ++v) {
+        for (int u = 0; u < camera_.width; ++u, ++pixel) {
+            if (states_[pixel] != PixelState::kCandidate) continue;
+            ++num_candidates_;
+            box = {std::min(box.first_u, u), std::min(box.first_v, v), std::max(box.last_u, u + 1),
+                   std::max(box.last_v, v + 1)};
+        }
+    }
+    candidate_box_ = num_candidates_ > 0 ? box : PixelBox{};
+}
+
+void Observation::sample_cloud(int max_points) {
+    const double every = std::sqrt(static_cast<double>(num_candidates_) / max_points);
+    const int stride = std::max(1, static_cast<int>(std::ceil(every)));
+    for (int v = candidate_box_.first_v; v < candidate_box_.last_v; v += stride) {
+        for (int u = candidate_box_.first_u; u < candidate_box_.last_u; u += stride) {
+            const int pixel = v * camera_.width + u;
+            if (states_[pixel] != PixelState::kCandidate) continue;
+            points_in_camera_.push_back(point_at(pixel).cast<float>());
+            normals_in_camera_.push_back(normal_at(pixel, std::max(2, stride)));
+        }
+    }
+}
+
+void Observation::index_cloud() {
+    if (points_in_camera_.empty()) return;
+    double distances_m = 0.0;
+    for (const Eigen::Vector3f& point : points_in_camera_) {
+        centroid_in_camera_ += point.cast<double>();
+        distances_m += point.cast<double>().norm();
+    }
+    const double count = static_cast<double>(points_in_camera_.size());
+    centroid_in_camera_ /= count;
+    mean_distance_m_ = distances_m / count;
+    index_ = PointIndex(points_in_camera_);
+}
+
+ObservedGrid observe(const Observation& observation, const PixelGrid& grid) {
+    ObservedGrid observed;
+    observed.grid = grid;
+    observed.camera = camera_of(grid, observation.camera());
+    observed.segmented = observation.segmented();
+    observed.states.reserve(grid.size());
+    observed.depth_m.reserve(grid.size());
+    observed.sigma_m.reserve(grid.size());
+    for (int index = 0; index < grid.size(); ++index) {
+        const int pixel = grid.image_v(index) * observation.camera().width + grid.image_u(index);
+        const float depth_m = observation.depth_m()[pixel];
+        observed.states.push_back(observation.states()[pixel]);
+        observed.depth_m.push_back(depth_m);
+        observed.sigma_m.push_back(static_cast<float>(observation.sensor().sigma_m(depth_m)));
+        observed.num_candidates += observation.states()[pixel] == PixelState::kCandidate;
+    }
+    return observed;
+}
+
+Observation make_observation(const DepthImage& depth, const PinholeCamera& camera, const std::optional<Mask>& mask,
+                             const ObservationOptions& options) {
+    validate(camera);
+    validate(options.sensor);
+    check_option("observation.max_points", options.max_points, 1, 1e7);
+    check_size("depth image", depth.width, depth.height, depth.depth_m.size(), camera);
+    if (mask) check_size("mask", mask->width, mask->height, mask->value.size(), camera);
+    Observation observation;
+    observation.camera_ = camera;
+    observation.sensor_ = options.sensor;
+    observation.segmented_ = mask.has_value();
+    observation.depth_m_.assign(depth.depth_m.size(), 0.0F);
+    observation.states_.assign(depth.depth_m.size(), PixelState::kNoDepth);
+    for (std::size_t pixel = 0; pixel < depth.depth_m.size(); ++pixel) {
+        if (!in_range(depth.depth_m[pixel], options.sensor)) continue;
+        observation.depth_m_[pixel] = depth.depth_m[pixel];
+        const bool object = !mask || mask->value[pixel] != 0;
+        observation.states_[pixel] = object ? PixelState::kCandidate : PixelState::kBackground;
+    }
+    observation.find_candidates();
+    observation.sample_cloud(options.max_points);
+    observation.index_cloud();
+    return observation;
+}
+
+Observation make_observation(const std::vector<Eigen::Vector3f>& points_in_camera, const PinholeCamera& camera,
+                             const ObservationOptions& options) {
+    validate(camera);
+    validate(options.sensor);
+    check_option("observation.max_points", options.max_points, 1, 1e7);
+    std::vector<Eigen::Vector3f> points;
+    for (const Eigen::Vector3f& point : points_in_camera)
+        if (point.allFinite() && in_range(point.z(), options.sensor)) points.push_back(point);
+
+    Observation observation;
+    const int stride = stride_that_the_cloud_fills(points, camera);
+    observation.camera_ = camera_of({0, 0, stride, camera.width / stride, camera.height / stride}, camera);
+    observation.sensor_ = options.sensor;
+    observation.segmented_ = true;
+    const std::size_t pixels = static_cast<std::size_t>(observation.camera_.width) * observation.camera_.height;
+    observation.depth_m_.assign(pixels, 0.0F);
+    observation.states_.assign(pixels, PixelState::kNoDepth);
+    for (const Eigen::Vector3f& point : points) {
+        const Eigen::Vector2d uv = observation.camera_.project(point.cast<double>());
+        const int pixel = observation.camera_.pixel_at(uv.x(), uv.y());
+        if (pixel < 0) continue;
+        float& depth = observation.depth_m_[pixel];
+        if (observation.states_[pixel] == PixelState::kNoDepth || point.z() < depth) depth = point.z();
+        observation.states_[pixel] = PixelState::kCandidate;
+    }
+    observation.find_candidates();
+    observation.sample_cloud(options.max_points);
+    observation.index_cloud();
+    return observation;
+}
+
+}  // namespace nearpose

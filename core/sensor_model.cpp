@@ -1,0 +1,16 @@
+#include "core/sensor_model.hpp"
+
+#include "core/check.hpp"
+
+namespace nearpose {
+
+void validate(const SensorModel& sensor) {
+    check_option("sensor.sigma_floor_m", sensor.sigma_floor_m, 1e-9, 1.0);
+    check_option("sensor.sigma_per_square_metre", sensor.sigma_per_square_metre, 0.0, 1.0);
+    check_option("sensor.systematic_sigma_m", sensor.systematic_sigma_m, 0.0, 1.0);
+    check_option("sensor.systematic_length_pixels", sensor.systematic_length_pixels, 1.0, 1e4);
+    check_option("sensor.min_range_m", sensor.min_range_m, 0.0, 1e3);
+    check_option("sensor.max_range_m", sensor.max_range_m, sensor.min_range_m, 1e3);
+}
+
+}  // namespace nearpose

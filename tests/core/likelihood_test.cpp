@@ -1,0 +1,131 @@
+#include "core/likelihood.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/core/analytic_part.hpp"
+
+namespace nearpose {
+namespace {
+
+const test::BoxViewGenerator kPart(test::asymmetric_part());
+const PinholeCamera kCamera = test::small_camera();
+const Pose kTruth{Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX())), {0.0, 0, 0.45}};
+const PixelGrid kGrid = grid_over({0, 0, 160, 120}, 3000);
+
+PixelCost cost_at(const Pose& pose, const Observation& observation, const PixelCostOptions& options = {}) {
+    const ObservedGrid observed = observe(observation, kGrid);
+    return pixel_cost(kPart.generate(pose, observed.camera), pose, observed, options);
+}
+
+Observation observe_part(bool with_mask, float wall_m = 0.8F) {
+    Mask mask;
+    const DepthImage image = test::render(kPart, kTruth, kCamera, wall_m, &mask);
+    return make_observation(image, kCamera, with_mask ? std::optional(mask) : std::nullopt);
+}
+
+Pose shifted(double x, double y, double z) {
+    Pose pose = kTruth;
+    pose.translation += Eigen::Vector3d(x, y, z);
+    return pose;
+}
+
+TEST(OverlapMse, IsThePapersFormula) {
+    Correspondences pairs;
+    for (const double error : {0.001, 0.002, 0.003}) {
+        pairs.points_in_object.emplace_back(0, 0, 0);
+        pairs.points_in_camera.emplace_back(static_cast<float>(error), 0, 0);
+    }
+    // m / n * MSE = 12 / 3 * (1 + 4 + 9) / 3 mm^2
+    EXPECT_NEAR(overlap_scaled_mse(pairs, Pose::identity(), 12, 0.03), 4.0 * 14.0 / 3.0 * 1e-6, 1e-12);
+}
+
+TEST(OverlapMse, NothingMatchedIsWorseThanAnythingMatched) {
+    Correspondences one;
+    one.points_in_object.emplace_back(0, 0, 0);
+    one.points_in_camera.emplace_back(0.03F, 0, 0);  // at the gate
+    EXPECT_GT(overlap_scaled_mse({}, Pose::identity(), 100, 0.03),
+              overlap_scaled_mse(one, Pose::identity(), 100, 0.03));
+}
+
+TEST(PixelCost, IsZeroAtTheTruthAndCountsEveryPixel) {
+    const PixelCost cost = cost_at(kTruth, observe_part(true));
+    EXPECT_LT(cost.cost, 1e-4);
+    EXPECT_EQ(cost.agreeing, cost.judged);
+    EXPECT_EQ(cost.missing_model + cost.model_in_front + cost.model_behind, 0);
+}
+
+TEST(PixelCost, ASmallErrorInDepthCostsItsSquare) {
+    const Observation observation = observe_part(true);
+    const double sigma_m = observation.sensor().sigma_m(0.45);
+    // Seen face on, moved by half a sigma: r^2 / truncation^2 = 0.25 / 9, but for the towers' own distance and sigma.
+    // At the outline a few rays meet another surface.
+    const PixelCost cost = cost_at(shifted(0, 0, 0.5 * sigma_m), observation);
+    const int others = cost.judged - cost.agreeing;
+    EXPECT_LT(others, 0.05 * cost.judged);
+    EXPECT_NEAR((cost.cost * cost.judged - others) / cost.agreeing, 0.25 / 9.0, 0.006);
+}
+
+TEST(PixelCost, ModelOverSeenBackgroundAndMissingModelCostFully) {
+    const Observation observation = observe_part(true);
+    const PixelCost cost = cost_at(shifted(0.3, 0, 0), observation);  // beside the object
+    EXPECT_GT(cost.model_in_front, 50);
+    EXPECT_GT(cost.missing_model, 50);
+    EXPECT_NEAR(cost.cost, 1.0, 1e-9);
+}
+
+TEST(PixelCost, ModelBehindTheBackgroundMayBeHidden) {
+    const Observation observation = observe_part(true);
+    const Pose behind_wall = shifted(0.5, 0, 1.0);
+    const PixelCost cost = cost_at(behind_wall, observation);
+    EXPECT_GT(cost.model_behind, 15);
+    const double hidden = 0.3 * cost.model_behind, missing = cost.missing_model;
+    EXPECT_NEAR(cost.cost, (hidden + missing) / cost.judged, 1e-9);
+}
+
+TEST(PixelCost, MissingDepthSaysNothing) {
+    DepthImage image = test::render(kPart, kTruth, kCamera, 0.8F, nullptr);
+    Mask mask;
+    test::render(kPart, kTruth, kCamera, 0.8F, &mask);
+    for (std::size_t pixel = 0; pixel < image.depth_m.size(); pixel += 2) image.depth_m[pixel] = 0.0F;
+    const PixelCost holes = cost_at(kTruth, make_observation(image, kCamera, mask));
+    EXPECT_LT(holes.cost, 1e-4);
+    std::fill(image.depth_m.begin(), image.depth_m.end(), 0.0F);
+    const PixelCost nothing = cost_at(kTruth, make_observation(image, kCamera, mask));
+    EXPECT_EQ(nothing.judged, 0);
+    EXPECT_EQ(nothing.cost, 1.0);
+}
+
+TEST(PixelCost, WithoutAMaskTheTruthIsStillTheMinimum) {
+    const Observation observation = observe_part(false);
+    const double truth = cost_at(kTruth, observation).cost;
+    for (const auto& [x, y, z] : {std::array{0.01, 0.0, 0.0},
+                                  {0.0, 0.02, 0.0},
+                                  {0.0, 0.0, 0.01},
+                                  {0.0, 0.0, -0.01},
+                                  {0.3, 0.0, 0.0},
+                                  {0.0, 0.0, 1.0}})
+        EXPECT_LT(truth, cost_at(shifted(x, y, z), observation).cost) << x << " " << y << " " << z;
+}
+
+TEST(PixelCost, TurnedByHalfATurnIsWorse) {
+    for (const bool with_mask : {true, false}) {
+        const Observation observation = observe_part(with_mask);
+        const Pose turned = kTruth * exp((Twist() << 0, 0, M_PI, 0, 0, 0).finished());
+        EXPECT_GT(cost_at(turned, observation).cost, cost_at(kTruth, observation).cost + 0.05);
+    }
+}
+
+TEST(Likelihood, LiesBetweenCertainAndIgnorant) {
+    // Epsilon of a chance match within the gate, 3/5 gate^2, with no sensor noise, is half a unit of log-likelihood.
+    EXPECT_NEAR(negative_log_likelihood(0.6 * 0.03 * 0.03, 0.0, 0.03), 0.5, 1e-12);
+    PixelCost cost;
+    cost.cost = 0.1;
+    PixelCostOptions options;
+    EXPECT_NEAR(negative_log_likelihood(cost, options),
+                0.5 * options.independent_rays * options.truncation_sigmas * options.truncation_sigmas * 0.1, 1e-12);
+}
+
+}  // namespace
+}  // namespace nearpose
