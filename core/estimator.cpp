@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 #include "core/check.hpp"
@@ -56,17 +57,16 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
     ++step_;
     result.points_observed = observation.num_candidates();
     predict(now_from_before, result);
+    bool seen = false;
     if (result.points_observed >= options_.min_candidates) {
+        const ParticleSet predicted = particles_;
         if (particles_.size() == 0) start(observation, result);
         move_particles(observation, result);
-        if (options_.method.refinement.modes > 0)
-            take_refined_mode(observation, result);
-        else
-            take_map(observation, result);
-        result.status = UpdateStatus::kEstimated;
-    } else if (tracked_) {
-        result.status = UpdateStatus::kPredicted;
+        seen = options_.method.refinement.modes > 0 ? take_refined_mode(observation, result)
+                                                    : take_map(observation, result);
+        if (!seen) particles_ = predicted;  // not pulled onto something else; none yet: the next frame starts again
     }
+    result.status = seen ? UpdateStatus::kEstimated : tracked_ ? UpdateStatus::kPredicted : UpdateStatus::kNoPose;
     if (tracked_) describe_estimate(observation, result);
     result.seconds.total = seconds_since(begin);
     return result;
@@ -83,7 +83,7 @@ void PoseEstimator::reset(const Pose& camera_from_object, const Diffusion& sprea
     reset();
     particles_ =
         start_around(camera_from_object, spread, views_->extent(), options_.num_particles, options_.seed, step_);
-    tracked_ = Mode{camera_from_object, 1.0};
+    tracked_ = Mode{camera_from_object, 1.0, 0.0};
 }
 
 // Resampling where the weights have become uneven, then control and diffusion, as in the paper's algorithm.
@@ -107,35 +107,42 @@ void PoseEstimator::start(const Observation& observation, UpdateResult& result) 
     const Clock::time_point begin = Clock::now();
     const Method& method = options_.method;
     const int count = std::max(method.start_candidates, options_.num_particles);
-    if (method.start == Start::kSphere) {
+    particles_ = method.start == Start::kSurface ? start_where_surfaces_meet(observation, count) : ParticleSet{};
+    if (particles_.size() == 0)
         particles_ = start_on_sphere(observation, views_->extent(), count, options_.seed, step_);
-    } else {
-        // A whole object in view is found from its centroid, a part of one from its surface: half of the starts each.
-        const int on_sphere = observation.segmented() ? count / 2 : 0;
-        particles_ = start_on_sphere(observation, views_->extent(), on_sphere, options_.seed, step_);
-        const PinholeCamera coarse = camera_of(grid_for(observation, method.start_step.max_rays), observation.camera());
-        parallel_for(on_sphere, options_.num_threads, [&](int i) {
-            for (int round = 0; round < 2; ++round)
-                particles_.poses[i] = shift_to_seen_surface(particles_.poses[i], observation, *views_, coarse);
-        });
-        const ParticleSet surface =
-            start_on_surface(observation, anchors_, count - on_sphere, options_.seed, step_ << 32);
-        particles_.poses.insert(particles_.poses.end(), surface.poses.begin(), surface.poses.end());
-    }
-    if (method.start_candidates > 0) {
-        const std::vector<MovedParticle> moved =
-            move_all(particles_.poses, observation, method.start_step, RandomPurpose::kStart, result);
-        std::vector<int> order(moved.size());
-        for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
-        std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-            return moved[a].negative_log_likelihood < moved[b].negative_log_likelihood;
-        });
-        order.resize(std::min<std::size_t>(order.size(), options_.num_particles));
-        particles_.poses.clear();
-        for (const int index : order) particles_.poses.push_back(moved[index].camera_from_object);
-    }
+    if (method.start_candidates > 0) keep_best_starts(observation, result);
     particles_.weights.assign(particles_.poses.size(), 0.0);
     result.seconds.start = seconds_since(begin);
+}
+
+// A whole object in view is found from the centroid of what is seen, a part of one from its surface: half of the starts
+// each. Where nothing is segmented there is no centroid to go by. Empty if no surface shows a normal.
+ParticleSet PoseEstimator::start_where_surfaces_meet(const Observation& observation, int count) const {
+    const int on_sphere = observation.segmented() ? count / 2 : 0;
+    ParticleSet particles = start_on_sphere(observation, views_->extent(), on_sphere, options_.seed, step_);
+    const int max_rays = options_.method.start_step.max_rays;
+    const PinholeCamera coarse = camera_of(grid_for(observation, max_rays), observation.camera());
+    parallel_for(on_sphere, options_.num_threads, [&](int i) {
+        for (int round = 0; round < 2; ++round)  // the first shift changes what is seen
+            particles.poses[i] = shift_to_seen_surface(particles.poses[i], observation, *views_, coarse);
+    });
+    const ParticleSet on_surface =
+        start_on_surface(observation, anchors_, count - on_sphere, options_.seed, step_, on_sphere);
+    particles.poses.insert(particles.poses.end(), on_surface.poses.begin(), on_surface.poses.end());
+    particles.weights.assign(particles.poses.size(), 0.0);
+    return particles;
+}
+
+void PoseEstimator::keep_best_starts(const Observation& observation, UpdateResult& result) {
+    const std::vector<MovedParticle> moved =
+        move_all(particles_.poses, observation, options_.method.start_step, RandomPurpose::kStart, result);
+    std::vector<int> order(moved.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](int a, int b) { return moved[a].negative_log_likelihood < moved[b].negative_log_likelihood; });
+    order.resize(std::min<std::size_t>(order.size(), options_.num_particles));
+    particles_.poses.clear();
+    for (const int index : order) particles_.poses.push_back(moved[index].camera_from_object);
 }
 
 void PoseEstimator::move_particles(const Observation& observation, UpdateResult& result) {
@@ -158,9 +165,7 @@ std::vector<MovedParticle> PoseEstimator::move_all(const std::vector<Pose>& pose
                                                    const GradientStep& step, RandomPurpose purpose,
                                                    UpdateResult& result) const {
     const ObservedGrid observed = observe(observation, grid_for(observation, step.max_rays));
-    PixelCostOptions pixel_cost = options_.method.pixel_cost;
-    pixel_cost.extra_sigma_m = step.extra_sigma_diameters * views_->extent().diameter_m();
-    const StepContext context{*views_, *solver_, observation, observed, step, options_.method.cost, pixel_cost};
+    const StepContext context = context_for(observation, observed, step);
     std::vector<MovedParticle> moved(poses.size());
     parallel_for(static_cast<int>(poses.size()), options_.num_threads, [&](int i) {
         moved[i] = move_particle(poses[i], context, RandomStream(options_.seed, step_, i, purpose));
@@ -172,48 +177,56 @@ std::vector<MovedParticle> PoseEstimator::move_all(const std::vector<Pose>& pose
     return moved;
 }
 
-void PoseEstimator::take_map(const Observation& observation, UpdateResult& result) {
+bool PoseEstimator::take_map(const Observation& observation, UpdateResult& result) {
     const int best = map_index(particles_.weights);
-    tracked_ = Mode{particles_.poses[best], last_costs_[best]};
+    tracked_ = Mode{particles_.poses[best], last_costs_[best], 0.0};
     const double sigma_m = observation.sensor().sigma_m(observation.mean_distance_m());
     result.score = options_.method.cost == Cost::kPixels ? 1.0 - tracked_->cost
                                                          : 1.0 / (1.0 + tracked_->cost / (sigma_m * sigma_m));
+    return true;
 }
 
 // The tracked pose and the best modes of the swarm and among the rivals are refined side by side. The tracked one stays
 // unless another one's present cost is clearly better: one early wrong lock must not last.
-void PoseEstimator::take_refined_mode(const Observation& observation, UpdateResult& result) {
+bool PoseEstimator::take_refined_mode(const Observation& observation, UpdateResult& result) {
     const Clock::time_point begin = Clock::now();
     const Refinement& refinement = options_.method.refinement;
-    const std::vector<Mode> candidates = modes_to_refine(observation, result);
-    const ObservedGrid observed = observe(observation, grid_for(observation, refinement.max_rays));
-    const StepContext context{
-        *views_, *solver_, observation, observed, options_.method.step, Cost::kPixels, options_.method.pixel_cost};
-    std::vector<Mode> refined(candidates.size());
-    std::vector<MovedParticle> moved(candidates.size());
-    parallel_for(static_cast<int>(candidates.size()), options_.num_threads,
-                 [&](int k) { moved[k] = refine_mode(candidates[k].camera_from_object, context, refinement); });
-    for (std::size_t k = 0; k < moved.size(); ++k) {
-        refined[k] = {moved[k].camera_from_object, moved[k].cost};
-        result.counts += moved[k].counts;
-        result.seconds.stages += moved[k].seconds;
-    }
+    const std::vector<Mode> refined = refine_all(modes_to_refine(observation, result), observation, result);
     const Eigen::Vector3d centre = views_->extent().centre_in_object();
     result.modes = distinct_modes(refined, static_cast<int>(refined.size()), centre, mode_distance());
-    const Mode& best = result.modes.front();
-    const bool replaced = !tracked_ || best.cost < refinement.challenge_ratio * refined.front().cost;
-    result.mode_replaced =
-        tracked_ && replaced &&
-        !same_mode(best.camera_from_object, refined.front().camera_from_object, centre, mode_distance());
-    frames_held_ = replaced ? 0 : frames_held_ + 1;
-    tracked_ = replaced ? best : refined.front();
-    result.score = 1.0 - tracked_->cost;
-    // The swarm learns of it in place of its least likely member.
-    const auto worst =
-        std::max_element(particles_.weights.begin(), particles_.weights.end()) - particles_.weights.begin();
-    particles_.poses[worst] = tracked_->camera_from_object;
-    particles_.weights[worst] = particles_.weights[map_index(particles_.weights)];
     result.seconds.refinement = seconds_since(begin);
+    const Mode& best = result.modes.front();
+    const Mode& tracked = refined.front();
+    const bool replaced = !tracked_ || best.cost < refinement.challenge_ratio * tracked.cost;
+    const Mode chosen = replaced ? best : tracked;
+    if (chosen.support < refinement.min_support) return false;
+    result.mode_replaced = tracked_ && replaced &&
+                           !same_mode(best.camera_from_object, tracked.camera_from_object, centre, mode_distance());
+    frames_held_ = replaced ? 0 : frames_held_ + 1;
+    tracked_ = chosen;
+    result.score = 1.0 - chosen.cost;
+    // The swarm learns of it in place of its least likely member.
+    const auto worst = std::max_element(particles_.weights.begin(), particles_.weights.end());
+    particles_.poses[worst - particles_.weights.begin()] = chosen.camera_from_object;
+    *worst = particles_.weights[map_index(particles_.weights)];
+    return true;
+}
+
+std::vector<Mode> PoseEstimator::refine_all(const std::vector<Mode>& modes, const Observation& observation,
+                                            UpdateResult& result) const {
+    const Refinement& refinement = options_.method.refinement;
+    const ObservedGrid observed = observe(observation, grid_for(observation, refinement.max_rays));
+    const StepContext context = context_for(observation, observed, options_.method.step);
+    std::vector<MovedParticle> moved(modes.size());
+    parallel_for(static_cast<int>(modes.size()), options_.num_threads,
+                 [&](int k) { moved[k] = refine_mode(modes[k].camera_from_object, context, refinement); });
+    std::vector<Mode> refined;
+    for (const MovedParticle& mode : moved) {
+        refined.push_back({mode.camera_from_object, mode.cost, mode.support});
+        result.counts += mode.counts;
+        result.seconds.stages += mode.seconds;
+    }
+    return refined;
 }
 
 // The tracked mode first (where there is one), then the swarm's, then the rivals.
@@ -221,7 +234,7 @@ std::vector<Mode> PoseEstimator::modes_to_refine(const Observation& observation,
     const Refinement& refinement = options_.method.refinement;
     const Eigen::Vector3d centre = views_->extent().centre_in_object();
     std::vector<Mode> swarm;
-    for (int i = 0; i < particles_.size(); ++i) swarm.push_back({particles_.poses[i], last_costs_[i]});
+    for (int i = 0; i < particles_.size(); ++i) swarm.push_back({particles_.poses[i], last_costs_[i], 0.0});
     const std::vector<Mode> leaders = distinct_modes(swarm, refinement.modes, centre, mode_distance());
     std::vector<Mode> modes;
     if (tracked_) modes.push_back(*tracked_);
@@ -250,8 +263,15 @@ std::vector<Mode> PoseEstimator::best_rivals(const std::vector<Mode>& leaders, c
     const std::vector<MovedParticle> moved =
         move_all(proposals, observation, options_.method.start_step, RandomPurpose::kRivals, result);
     std::vector<Mode> modes;
-    for (const MovedParticle& rival : moved) modes.push_back({rival.camera_from_object, rival.cost});
+    for (const MovedParticle& rival : moved) modes.push_back({rival.camera_from_object, rival.cost, rival.support});
     return distinct_modes(modes, refinement.rival_modes, views_->extent().centre_in_object(), mode_distance());
+}
+
+StepContext PoseEstimator::context_for(const Observation& observation, const ObservedGrid& observed,
+                                       const GradientStep& step) const {
+    PixelCostOptions pixel_cost = options_.method.pixel_cost;
+    pixel_cost.extra_sigma_m = step.extra_sigma_diameters * views_->extent().diameter_m();
+    return {*views_, *solver_, observation, observed, step, options_.method.cost, pixel_cost};
 }
 
 // Views are cast where the object may be: around the segmented pixels, or around the tracked pose, or everywhere.
@@ -287,13 +307,7 @@ void PoseEstimator::describe_estimate(const Observation& observation, UpdateResu
     result.camera_from_object = tracked_->camera_from_object;
     result.cost = tracked_->cost;
     const ObservedGrid observed = observe(observation, grid_for(observation, options_.method.refinement.max_rays));
-    const StepContext context{*views_,
-                              *solver_,
-                              observation,
-                              observed,
-                              options_.method.step,
-                              options_.method.cost,
-                              options_.method.pixel_cost};
+    const StepContext context = context_for(observation, observed, options_.method.step);
     const SensorModel& sensor = observation.sensor();
     CovarianceOptions covariance;
     const double side = std::max(1.0, sensor.systematic_length_pixels / observed.grid.stride);

@@ -77,14 +77,21 @@ class PoseEstimator {
   private:
     void predict(const std::optional<Pose>& now_from_before, UpdateResult& result);
     void start(const Observation& observation, UpdateResult& result);
+    ParticleSet start_where_surfaces_meet(const Observation& observation, int count) const;
+    void keep_best_starts(const Observation& observation, UpdateResult& result);
     void move_particles(const Observation& observation, UpdateResult& result);
-    void take_map(const Observation& observation, UpdateResult& result);
-    void take_refined_mode(const Observation& observation, UpdateResult& result);
+    // Both choose the estimate; false: no pose shows the object in this observation.
+    bool take_map(const Observation& observation, UpdateResult& result);
+    bool take_refined_mode(const Observation& observation, UpdateResult& result);
     std::vector<Mode> modes_to_refine(const Observation& observation, UpdateResult& result) const;
     std::vector<Mode> best_rivals(const std::vector<Mode>& leaders, const Observation& observation,
                                   UpdateResult& result) const;
     std::vector<MovedParticle> move_all(const std::vector<Pose>& poses, const Observation& observation,
                                         const GradientStep& step, RandomPurpose purpose, UpdateResult& result) const;
+    std::vector<Mode> refine_all(const std::vector<Mode>& modes, const Observation& observation,
+                                 UpdateResult& result) const;
+    StepContext context_for(const Observation& observation, const ObservedGrid& observed,
+                            const GradientStep& step) const;
     PixelGrid grid_for(const Observation& observation, int max_rays) const;
     ModeDistance mode_distance() const;
     void describe_estimate(const Observation& observation, UpdateResult& result) const;

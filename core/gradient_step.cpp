@@ -68,6 +68,7 @@ void weigh_by_pixels(const StepContext& context, const PixelCostOptions& options
     const Timer timer(moved.seconds.likelihood);
     const PixelCost cost = pixel_cost(view, moved.camera_from_object, context.observed, options);
     moved.cost = cost.cost;
+    moved.support = cost.support();
     moved.negative_log_likelihood = negative_log_likelihood(cost, options);
 }
 

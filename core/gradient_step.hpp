@@ -34,7 +34,8 @@ struct StepCounts {
 struct MovedParticle {
     Pose camera_from_object;
     double negative_log_likelihood = 0.0;
-    double cost = 0.0;  // the pixel cost, or epsilon [m^2]
+    double cost = 0.0;     // the pixel cost, or epsilon [m^2]
+    double support = 0.0;  // with the pixel cost: share of the model's rays that agree
     StepCounts counts;
     StageSeconds seconds;
 };

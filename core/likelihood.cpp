@@ -64,11 +64,11 @@ PixelCost pixel_cost(const View& view, const Pose& camera_from_object, const Obs
         const double residual_m = (observed.depth_m[index] - point.z()) * cosine;
         sum += cost_of_hit(residual_m, sigma_m, state, observed.segmented, options, result);
         candidates_covered += state == PixelState::kCandidate;
-        ++result.judged;
+        ++result.model_rays;
     }
     result.missing_model = observed.num_candidates - candidates_covered;
     sum += result.missing_model * (observed.segmented ? 1.0 : options.unexplained_cost);
-    result.judged += result.missing_model;
+    result.judged = result.model_rays + result.missing_model;
     result.cost = result.judged > 0 ? sum / result.judged : 1.0;
     return result;
 }

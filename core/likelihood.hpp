@@ -31,10 +31,14 @@ struct PixelCostOptions {
 struct PixelCost {
     double cost = 1.0;       // mean over the judged pixels, in 0..1
     int judged = 0;          // pixels with model or candidate, and depth
+    int model_rays = 0;      // of them those with model
     int agreeing = 0;        // model and depth agree within the truncation
     int missing_model = 0;   // candidate pixels without model
     int model_in_front = 0;  // model before the measured surface: the sensor looked through it
     int model_behind = 0;    // model behind the measured surface
+
+    // Share of the model's rays that agree with the measured depth, in 0..1.
+    double support() const { return model_rays > 0 ? static_cast<double>(agreeing) / model_rays : 0.0; }
 };
 
 // The default method's cost: each ray of the grid compares the model's depth z_m with the measured z_o, r = (z_o - z_m)

@@ -54,6 +54,7 @@ void validate(const Refinement& refinement) {
     check_option("refinement.rivals", refinement.rivals, 0, 1e5);
     check_option("refinement.rival_period", refinement.rival_period, 1, 1e6);
     check_option("refinement.rival_modes", refinement.rival_modes, 0, 1000);
+    check_option("refinement.min_support", refinement.min_support, 0.0, 1.0);
     check_option("refinement.frames_to_hold", refinement.frames_to_hold, 0, 1e6);
 }
 

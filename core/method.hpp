@@ -32,10 +32,11 @@ struct Refinement {
     double first_extra_sigma_diameters = 0.006;  // halved every round
     double cost_sigma_diameters = 0.002;         // tolerance of the cost that decides between modes
     double challenge_ratio = 0.9;                // a mode below this share of the tracked mode's cost replaces it
-    int rivals = 0;          // poses that the best modes may be mistaken for, tried as further modes
-    int rival_period = 10;   // frames between such trials once one mode holds
-    int rival_modes = 3;     // of them that are refined
-    int frames_to_hold = 5;  // frames without replacement after which one mode holds
+    int rivals = 0;             // poses that the best modes may be mistaken for, tried as further modes
+    int rival_period = 10;      // frames between such trials once one mode holds
+    int rival_modes = 3;        // of them that are refined
+    double min_support = 0.25;  // share of a mode's rays that agree with the depth; less shows nothing of the object
+    int frames_to_hold = 5;     // frames without replacement after which one mode holds
 };
 
 struct Method {

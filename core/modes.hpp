@@ -11,7 +11,8 @@ namespace nearpose {
 
 struct Mode {
     Pose camera_from_object;
-    double cost = 0.0;  // smaller is better
+    double cost = 0.0;     // smaller is better
+    double support = 0.0;  // share of the model's rays that agree with the measured depth, in 0..1
 };
 
 // Two poses closer than both are one mode.

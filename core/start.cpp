@@ -56,14 +56,14 @@ std::vector<SurfaceAnchor> find_anchors(const ViewGenerator& views, int count) {
 }
 
 ParticleSet start_on_surface(const Observation& observation, const std::vector<SurfaceAnchor>& anchors, int count,
-                             std::uint64_t seed, std::uint64_t step) {
+                             std::uint64_t seed, std::uint64_t step, std::uint64_t first_stream) {
     std::vector<int> oriented;  // measured points whose normal is known
     for (std::size_t p = 0; p < observation.normals_in_camera().size(); ++p)
         if (!observation.normals_in_camera()[p].isZero()) oriented.push_back(static_cast<int>(p));
     ParticleSet particles;
     if (anchors.empty() || oriented.empty()) return particles;
     for (int i = 0; i < count; ++i) {
-        RandomStream random(seed, step, static_cast<std::uint64_t>(i), RandomPurpose::kStart);
+        RandomStream random(seed, step, first_stream + static_cast<std::uint64_t>(i), RandomPurpose::kStart);
         const int measured = oriented[random.below(static_cast<int>(oriented.size()))];
         const SurfaceAnchor& anchor = anchors[random.below(static_cast<int>(anchors.size()))];
         const Eigen::Vector3d normal = observation.normals_in_camera()[measured].cast<double>();

@@ -30,10 +30,10 @@ struct SurfaceAnchor {
 std::vector<SurfaceAnchor> find_anchors(const ViewGenerator& views, int count);
 
 // The start for a partial view: a random anchor of the model is laid on a random measured point, normal on normal,
-// with a random turn about it. Needs no object centre, which a close camera does not see. Empty where there are no
-// anchors or no measured normals.
+// with a random turn about it. Needs no object centre, which a close camera does not see. Particle i draws from the
+// stream (seed, step, first_stream + i). Empty where there are no anchors or no measured normals.
 ParticleSet start_on_surface(const Observation& observation, const std::vector<SurfaceAnchor>& anchors, int count,
-                             std::uint64_t seed, std::uint64_t step);
+                             std::uint64_t seed, std::uint64_t step, std::uint64_t first_stream);
 
 // Moves `camera_from_object` so that the centroid of the surface that a view of it shows lies on the observed cloud's:
 // the model's origin, its box centre and the seen surface may be decimetres apart.

@@ -119,6 +119,42 @@ TEST(Estimator, NothingSeenYetIsNoPoseAndLaterThePredictionStandsIn) {
     EXPECT_LT(error_m(again, 2), 0.001);
 }
 
+TEST(Estimator, SomethingElseInViewIsNotTheObject) {
+    // A bare wall, and later a wall where the object was: no pose explains it, so the prediction stands in.
+    const DepthImage wall{kCamera.width, kCamera.height, std::vector<float>(160 * 120, 0.9F)};
+    PoseEstimator estimator(kPart, kSolver, small_options(method_default(), 0));
+    const Mask somewhere{kCamera.width, kCamera.height, [] {
+                             std::vector<std::uint8_t> value(160 * 120, 0);
+                             for (int v = 40; v < 80; ++v) std::fill_n(value.begin() + v * 160 + 60, 40, 1);
+                             return value;
+                         }()};
+    EXPECT_EQ(estimator.update(observe_at(0), {}).status, UpdateStatus::kEstimated);
+    DepthImage tilted = wall;  // no face of the part is as large, and it is far behind
+    for (std::size_t pixel = 0; pixel < tilted.depth_m.size(); ++pixel)
+        tilted.depth_m[pixel] = 1.5F + 0.01F * static_cast<float>(pixel % 160);
+    const UpdateResult hidden = estimator.update(make_observation(tilted, kCamera, somewhere), motion_to(1));
+    EXPECT_EQ(hidden.status, UpdateStatus::kPredicted);
+    EXPECT_EQ(hidden.score, 0.0);
+    EXPECT_LT(error_m(hidden, 1), 0.001);
+    const UpdateResult again = estimator.update(observe_at(2), motion_to(2));
+    EXPECT_EQ(again.status, UpdateStatus::kEstimated);
+    EXPECT_LT(error_m(again, 2), 0.001) << "the swarm was not pulled away";
+}
+
+TEST(Estimator, WithoutMeasuredNormalsItStillStarts) {
+    // Every second column has no depth: no pixel has the neighbours that a normal needs.
+    Mask mask;
+    DepthImage image = test::render(*kPart, truth_at(0), kCamera, 0.9F, &mask);
+    for (std::size_t pixel = 0; pixel < image.depth_m.size(); ++pixel)
+        if (pixel % 3 != 0) image.depth_m[pixel] = 0.0F;
+    PoseEstimator estimator(kPart, kSolver, small_options(method_default(), 0));
+    for (const bool with_mask : {true, false}) {
+        estimator.reset();
+        EXPECT_NO_THROW(
+            estimator.update(make_observation(image, kCamera, with_mask ? std::optional(mask) : std::nullopt), {}));
+    }
+}
+
 TEST(Estimator, ResetForgets) {
     PoseEstimator estimator(kPart, kSolver, small_options(method_default(), 0));
     estimator.update(observe_at(0), {});

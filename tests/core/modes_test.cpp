@@ -8,7 +8,7 @@ namespace nearpose {
 namespace {
 
 Mode mode(double x, double angle_rad, double cost) {
-    return {{Eigen::Quaterniond(Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ())), {x, 0, 1}}, cost};
+    return {{Eigen::Quaterniond(Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ())), {x, 0, 1}}, cost, 0.0};
 }
 
 TEST(Modes, DistinctOnesBestFirst) {

@@ -67,7 +67,7 @@ TEST(Start, AnchorsLieOnTheSurfaceWithOutwardNormalsOnAllSides) {
 TEST(Start, SurfaceStartsLayAnAnchorOnAMeasuredPointNormalOnNormal) {
     const Observation observation = observe_part();
     const std::vector<SurfaceAnchor> one = {{{0.1F, 0.02F, 0.01F}, {1, 0, 0}}};
-    for (const Pose& pose : start_on_surface(observation, one, 50, 1, 1).poses) {
+    for (const Pose& pose : start_on_surface(observation, one, 50, 1, 1, 0).poses) {
         const Eigen::Vector3f point = (pose * one[0].point_in_object.cast<double>()).cast<float>();
         const Eigen::Vector3f normal = (pose.rotation * one[0].normal_in_object.cast<double>()).cast<float>();
         float best = 1.0F;
@@ -76,7 +76,7 @@ TEST(Start, SurfaceStartsLayAnAnchorOnAMeasuredPointNormalOnNormal) {
                                       (observation.normals_in_camera()[p] - normal).norm());
         EXPECT_LT(best, 1e-4F);
     }
-    EXPECT_EQ(start_on_surface(observation, {}, 50, 1, 1).size(), 0);
+    EXPECT_EQ(start_on_surface(observation, {}, 50, 1, 1, 0).size(), 0);
 }
 
 TEST(Start, ShiftLaysTheSeenSurfaceOnTheMeasuredOne) {

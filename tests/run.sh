@@ -1,0 +1,10 @@
+#!/usr/bin/env bash
+# Sets up and runs every test. usage: tests/run.sh [PRESET] [ctest arguments]   (preset: dev)
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+preset=${1:-dev}
+shift || true
+bash third_party_notes/install_packages.sh build test
+cmake --preset "$preset" >/dev/null
+cmake --build --preset "$preset"
+ctest --test-dir "build/$preset" --output-on-failure --no-tests=error "$@"
