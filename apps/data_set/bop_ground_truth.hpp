@@ -1,0 +1,16 @@
+// True poses of a BOP scene. For evaluation only: nothing that estimates may include this header.
+#pragma once
+
+#include <filesystem>
+#include <map>
+
+#include "core/pose.hpp"
+
+namespace nearpose::data_set {
+
+// camera_from_object by frame number, from scene_gt.json; frames without the object are left out, and of several
+// instances in a frame the first counts. Throws std::runtime_error naming file, frame and key; also where no frame has
+// the object.
+std::map<int, Pose> read_ground_truth(const std::filesystem::path& scene_folder, int object_id);
+
+}  // namespace nearpose::data_set

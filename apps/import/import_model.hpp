@@ -1,0 +1,33 @@
+// A CAD model or dense cloud with its unit into BOP's models folder: obj_NNNNNN.ply in millimetres and
+// models_info.json.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/data_set/bop_models.hpp"
+#include "raycast/mesh_loader.hpp"
+
+namespace nearpose::data_set {
+
+struct ModelImport {
+    std::filesystem::path model;
+    LengthUnit unit = LengthUnit::kMillimetre;
+    int object_id = 1;
+    std::filesystem::path models_folder;
+};
+
+struct ModelImportSummary {
+    std::filesystem::path file;
+    ModelInfo info;
+    std::vector<std::string> warnings;  // sentences for the user
+};
+
+// Adds to a models_info.json that is there already. Throws std::runtime_error naming the file and the cause.
+ModelImportSummary import_model(const ModelImport& options);
+
+// The largest distance of two of the points; 0 for fewer than two.
+double diameter_of(const std::vector<Eigen::Vector3f>& points);
+
+}  // namespace nearpose::data_set

@@ -1,0 +1,56 @@
+#include "tests/integration/run_scene.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "apps/data_set/bop_ground_truth.hpp"
+#include "apps/data_set/bop_models.hpp"
+#include "apps/data_set/bop_scene.hpp"
+#include "apps/estimator_setup.hpp"
+#include "apps/frame_source.hpp"
+#include "core/estimator.hpp"
+#include "raycast/mesh_loader.hpp"
+
+namespace nearpose::test {
+
+std::vector<program::FrameError> run_scene(const std::filesystem::path& scene, const std::filesystem::path& models,
+                                           const SceneRun& run) {
+    constexpr int kObject = 1;
+    const Mesh mesh = load_mesh(data_set::model_path(models, kObject), LengthUnit::kMillimetre).mesh;
+    const data_set::ModelInfo info = data_set::read_model_info(models, kObject);
+    const auto truth = data_set::read_ground_truth(scene, kObject);
+    const auto source = program::open_bop_source(scene, {}, {run.with_masks, kObject, std::nullopt});
+    EstimatorOptions options;
+    options.method = program::make_method(run.method);
+    options.num_particles = run.particles;
+    options.seed = run.seed;
+    PoseEstimator estimator(program::make_view_generator(run.views, mesh), program::make_solver(run.method), options);
+    std::vector<program::FrameError> errors;
+    std::optional<Pose> camera_from_world_before;
+    for (std::size_t k = 0; k < source->frames().size(); ++k) {
+        const program::FrameInfo& frame = source->frames()[k];
+        std::optional<Pose> now_from_before;
+        if (frame.camera_from_world && camera_from_world_before)
+            now_from_before = *frame.camera_from_world * camera_from_world_before->inverse();
+        camera_from_world_before = frame.camera_from_world;
+        const Observation observation = program::observe_frame(frame, source->load(k));
+        const UpdateResult result = estimator.update(observation, now_from_before);
+        program::FrameError error{frame.id, std::nullopt};
+        if (result.status != UpdateStatus::kNoPose && truth.count(frame.id) != 0)
+            error.error = program::pose_error(result.camera_from_object, truth.at(frame.id), info);
+        errors.push_back(error);
+    }
+    return errors;
+}
+
+program::PoseError worst_after(const std::vector<program::FrameError>& frames, std::size_t first) {
+    constexpr double kLost = std::numeric_limits<double>::infinity();
+    program::PoseError worst;
+    for (std::size_t k = first; k < frames.size(); ++k) {
+        worst.translation_m = std::max(worst.translation_m, frames[k].error ? frames[k].error->translation_m : kLost);
+        worst.rotation_rad = std::max(worst.rotation_rad, frames[k].error ? frames[k].error->rotation_rad : kLost);
+    }
+    return worst;
+}
+
+}  // namespace nearpose::test
