@@ -1,0 +1,210 @@
+#include "apps/command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <numeric>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "apps/console.hpp"
+#include "apps/data_set/file_io.hpp"
+#include "apps/estimate.hpp"
+#include "apps/evaluate.hpp"
+#include "apps/import_command.hpp"
+#include "apps/render.hpp"
+#include "apps/simulate/simulate_command.hpp"
+#include "apps/version.hpp"
+
+namespace nearpose::program {
+namespace {
+
+constexpr const char* kFooter =
+    "Every command also takes --config FILE (its options as key = value under [COMMAND]), --print-config and --quiet.\n"
+    "Exit codes: 0 done, 1 failed, 2 bad use, 3 done but some frames could not be read, 130 interrupted.";
+
+// Number of letters to insert, delete or change.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+            diagonal = row[j];
+            row[j] = std::min({row[j] + 1, row[j - 1] + 1, changed});
+        }
+    }
+    return row.back();
+}
+
+std::string nearest(const std::string& word, const std::vector<std::string>& known) {
+    return *std::min_element(known.begin(), known.end(), [&](const std::string& a, const std::string& b) {
+        return edit_distance(word, a) < edit_distance(word, b);
+    });
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+        names.push_back(command->get_name());
+    }
+    return names;
+}
+
+// The first word that is neither an option nor the value of --config: where the command must stand.
+std::string command_word(const std::vector<std::string>& words) {
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (words[i] == "--config") {
+            ++i;
+        } else if (!words[i].empty() && words[i][0] != '-') {
+            return words[i];
+        }
+    }
+    return {};
+}
+
+const CLI::App* chosen_command(const CLI::App& app) {
+    const std::vector<CLI::App*> chosen = app.get_subcommands();
+    return chosen.empty() ? nullptr : chosen.front();
+}
+
+int bad_use(const std::string& problem, const CLI::App* command) {
+    const std::string help = command == nullptr ? "nearpose --help" : "nearpose " + command->get_name() + " --help";
+    print_error(problem + "; see `" + help + "`");
+    return kBadUse;
+}
+
+// What is known of an option that nobody knows.
+std::string suggestion(const std::vector<std::string>& extras, const CLI::App* command) {
+    if (extras.empty() || command == nullptr || extras.front().rfind("--", 0) != 0) return {};
+    const std::string word = extras.front().substr(0, extras.front().find('='));
+    std::vector<std::string> known = {"--config", "--print-config", "--quiet"};
+    for (const CLI::Option* option : command->get_options()) known.push_back(option->get_name());
+    return "; did you mean " + nearest(word, known) + "?";
+}
+
+// Keys and values of the chosen command as --config reads them. What is not set is left out: an empty text is no
+// number.
+void print_config(const CLI::App& app, const CLI::App* command) {
+    if (command == nullptr) throw BadUse("--print-config needs a command");
+    std::istringstream config(app.get_config_formatter()->to_config(command, true, false, command->get_name() + "."));
+    for (std::string line; std::getline(config, line);) {
+        if (!line.ends_with("=\"\"")) print(line + "\n");
+    }
+}
+
+// `nearpose help` and `nearpose help COMMAND`.
+int print_help(const CLI::App& app, const std::vector<std::string>& words) {
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+        if (words.size() > 1 && command->get_name() == words[1]) {
+            print(command->help("nearpose"));
+            return kSuccess;
+        }
+    }
+    print(app.help());
+    return kSuccess;
+}
+
+struct Shell {
+    CLI::App app{"nearpose: the 6-DoF pose of a known part from a depth camera that comes close.", "nearpose"};
+    SharedOptions shared;
+    bool wants_version = false;
+    bool wants_config = false;
+    Run run;
+
+    Shell() {
+        app.option_defaults()->always_capture_default();
+        app.fallthrough();
+        app.allow_config_extras(CLI::config_extras_mode::error);
+        app.footer(kFooter);
+        app.set_config("--config", "", "File with options: those of estimate under [estimate], and so on (INI, TOML)");
+        app.add_flag("--print-config", wants_config, "Print the command's options as a file for --config, and end")
+            ->configurable(false);
+        app.add_flag("--quiet", shared.quiet, "No progress bar and no notices");
+        app.add_flag("--version", wants_version, "Print versions and end")->configurable(false);
+        add_estimate_command(app, shared, run);
+        add_simulate_command(app, shared, run);
+        add_render_command(app, shared, run);
+        add_evaluate_command(app, shared, run);
+        add_import_command(app, shared, run);
+        app.require_subcommand(0, 1);
+        for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+            command->fallthrough();
+            command->footer(command->get_footer() + (command->get_footer().empty() ? "" : "\n\n") + kFooter);
+        }
+    }
+};
+
+// Reads the command line into `shell`; a value where that already ends the program.
+int parse(Shell& shell, int argc, const char* const* argv) {
+    constexpr int kGoOn = -1;
+    try {
+        shell.app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        const CLI::App* command = chosen_command(shell.app);
+        print(command == nullptr ? shell.app.help() : command->help("nearpose"));
+        return kSuccess;
+    } catch (const CLI::RequiredError& error) {
+        // A template of a configuration is wanted just where not everything is known yet.
+        if (!shell.wants_config) return bad_use(error.what(), chosen_command(shell.app));
+    } catch (const CLI::ExtrasError& error) {
+        const CLI::App* command = chosen_command(shell.app);
+        return bad_use(error.what() + suggestion(shell.app.remaining(true), command), command);
+    } catch (const CLI::ParseError& error) {
+        return bad_use(error.what(), chosen_command(shell.app));
+    }
+    if (shell.wants_version) {
+        print(version_text());
+        return kSuccess;
+    }
+    if (shell.wants_config) {
+        print_config(shell.app, chosen_command(shell.app));
+        return kSuccess;
+    }
+    return kGoOn;
+}
+
+int run_shell(Shell& shell, int argc, const char* const* argv) {
+    const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+    const std::string word = command_word(words);
+    const std::vector<std::string> names = command_names(shell.app);
+    if (words.empty()) {
+        print(shell.app.help());
+        return bad_use("no command given", nullptr);
+    }
+    if (word == "help") return print_help(shell.app, words);
+    if (!word.empty() && std::find(names.begin(), names.end(), word) == names.end()) {
+        return bad_use("unknown command '" + word + "'; did you mean '" + nearest(word, names) + "'?", nullptr);
+    }
+    const int ended = parse(shell, argc, argv);
+    if (ended >= 0) return ended;
+    if (!shell.run) return bad_use("no command given", nullptr);
+    try {
+        return shell.run();
+    } catch (const BadUse& error) {
+        return bad_use(error.what(), chosen_command(shell.app));
+    }
+}
+
+}  // namespace
+
+int run_program(int argc, const char* const* argv) {
+    catch_signals();
+    try {
+        Shell shell;
+        return run_shell(shell, argc, argv);
+    } catch (const data_set::ClosedPipe&) {
+        return kSuccess;  // whoever read our output has seen enough
+    } catch (const BadUse& error) {
+        return bad_use(error.what(), nullptr);
+    } catch (const std::bad_alloc&) {
+        print_error("out of memory");
+    } catch (const std::exception& error) {
+        print_error(error.what());
+    }
+    return kFailure;
+}
+
+}  // namespace nearpose::program

@@ -1,0 +1,51 @@
+// Everything an estimation writes: result file, log, trajectory, pictures.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "apps/command_line.hpp"
+#include "apps/data_set/log_jsonl.hpp"
+#include "apps/data_set/result_csv.hpp"
+#include "apps/data_set/trajectory_tum.hpp"
+#include "apps/frame_log.hpp"
+#include "apps/frame_source.hpp"
+#include "core/estimator.hpp"
+#include "raycast/embree_scene.hpp"
+
+namespace nearpose::program {
+
+struct OutputOptions {
+    std::filesystem::path out;         // BOP result file
+    std::filesystem::path log;         // empty: none; the same for the next two
+    std::filesystem::path trajectory;  // TUM rows
+    std::filesystem::path pictures;    // folder
+    std::string trajectory_frame = "camera";
+};
+
+// Throws BadUse where two outputs have the same name.
+void check(const OutputOptions& options);
+
+class EstimateOutputs {
+  public:
+    // Opens all files; `mesh` is what pictures show. Throws std::runtime_error naming the file.
+    EstimateOutputs(const OutputOptions& options, const RunDescription& run, const Mesh& mesh);
+
+    // Writes a frame's rows as soon as they are known. A frame without a pose has a log line and a picture alone.
+    void append(const FrameInfo& frame, const FrameReport& report, const Observation& observation,
+                const UpdateResult& result);
+    void close();
+
+  private:
+    void draw(const FrameReport& report, const Observation& observation, const UpdateResult& result) const;
+
+    OutputOptions options_;
+    int scene_id_, object_id_;
+    data_set::PoseCsvWriter csv_;
+    std::optional<data_set::JsonLinesWriter> log_;
+    std::optional<data_set::TumWriter> trajectory_;
+    std::optional<EmbreeScene> scene_;
+};
+
+}  // namespace nearpose::program

@@ -1,0 +1,117 @@
+#include "apps/frame_log.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace nearpose::program {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json row_major(const Matrix6d& matrix) {
+    Json numbers = Json::array();
+    for (int row = 0; row < 6; ++row) {
+        for (int column = 0; column < 6; ++column) numbers.push_back(matrix(row, column));
+    }
+    return numbers;
+}
+
+Json translation_m(const Pose& pose) {
+    return {pose.translation.x(), pose.translation.y(), pose.translation.z()};
+}
+
+// x y z w with w >= 0.
+Json quaternion_xyzw(const Pose& pose) {
+    const Eigen::Vector4d xyzw =
+        pose.rotation.w() < 0.0 ? Eigen::Vector4d(-pose.rotation.coeffs()) : Eigen::Vector4d(pose.rotation.coeffs());
+    return {xyzw.x(), xyzw.y(), xyzw.z(), xyzw.w()};
+}
+
+Json counts_of(const StepCounts& counts) {
+    return {{"view_points", counts.view_points},
+            {"pairs", counts.pairs},
+            {"rejected_by_normal", counts.rejected_by_normal},
+            {"rejected_by_consensus", counts.rejected_by_consensus},
+            {"solves", counts.solves},
+            {"solves_with_too_few_pairs", counts.solves_with_too_few_pairs},
+            {"solves_not_usable", counts.solves_not_usable}};
+}
+
+Json seconds_of(const UpdateSeconds& seconds) {
+    return {{"total", seconds.total},
+            {"start", seconds.start},
+            {"particles", seconds.particles},
+            {"refinement", seconds.refinement},
+            {"views_all_threads", seconds.stages.views},
+            {"association_all_threads", seconds.stages.association},
+            {"solving_all_threads", seconds.stages.solving},
+            {"likelihood_all_threads", seconds.stages.likelihood}};
+}
+
+Json modes_of(const std::vector<Mode>& modes) {
+    Json list = Json::array();
+    for (const Mode& mode : modes) {
+        list.push_back({{"translation_m", translation_m(mode.camera_from_object)},
+                        {"quaternion_xyzw", quaternion_xyzw(mode.camera_from_object)},
+                        {"cost", mode.cost}});
+    }
+    return list;
+}
+
+// Text from file names need not be UTF-8.
+std::string dump(const Json& object) {
+    return object.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+Matrix6d ros_covariance(const Matrix6d& covariance, const Pose& camera_from_object) {
+    Matrix6d map = Matrix6d::Zero();
+    map.topRightCorner<3, 3>() = camera_from_object.rotation_matrix();
+    map.bottomLeftCorner<3, 3>() = camera_from_object.rotation_matrix();
+    return map * covariance * map.transpose();
+}
+
+std::string first_log_line(const RunDescription& run) {
+    return dump(
+        {{"format", 1},
+         {"content", "nearpose estimate"},
+         {"pose", "camera_from_object"},
+         {"camera_frame", "x right, y down, z forward"},
+         {"units", "m, rad, s"},
+         {"quaternion_order", "x y z w"},
+         {"covariance_order", "rotation x y z, translation x y z; of camera_from_object * exp(twist), object axes"},
+         {"covariance_ros_order", "x y z, rotation x y z; axes of the camera frame"},
+         {"input", run.input},
+         {"model", run.model},
+         {"scene_id", run.scene_id},
+         {"object_id", run.object_id},
+         {"views", run.views},
+         {"method", run.method},
+         {"particles", run.particles},
+         {"seed", run.seed}});
+}
+
+std::string frame_log_line(const FrameReport& frame, const UpdateResult& result) {
+    Json line = {{"frame", frame.frame_id}, {"stamp_s", frame.stamp_s}, {"status", to_string(result.status)}};
+    if (!frame.error.empty()) line["error"] = frame.error;
+    if (result.status != UpdateStatus::kNoPose) {
+        line["translation_m"] = translation_m(result.camera_from_object);
+        line["quaternion_xyzw"] = quaternion_xyzw(result.camera_from_object);
+        line["covariance"] = row_major(result.covariance);
+        line["covariance_ros"] = row_major(ros_covariance(result.covariance, result.camera_from_object));
+        line["score"] = result.score;
+        line["cost"] = result.cost;
+    }
+    line["effective_sample_size"] = result.effective_sample_size;
+    line["resampled"] = result.resampled;
+    line["mode_replaced"] = result.mode_replaced;
+    line["points_observed"] = result.points_observed;
+    line["time_s"] = frame.time_s;
+    line["counts"] = counts_of(result.counts);
+    line["seconds"] = seconds_of(result.seconds);
+    line["modes"] = modes_of(result.modes);
+    return dump(line);
+}
+
+}  // namespace nearpose::program

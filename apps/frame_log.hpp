@@ -1,0 +1,34 @@
+// The log of an estimation: one JSON object a line. The first says the format, the others are frames.
+#pragma once
+
+#include <string>
+
+#include "core/estimator.hpp"
+
+namespace nearpose::program {
+
+// What the run was told, for the first line.
+struct RunDescription {
+    std::string input, model, views, method;
+    int scene_id = 0, object_id = 0;
+    int particles = 0;
+    std::uint64_t seed = 0;
+};
+
+struct FrameReport {
+    int frame_id = 0;
+    double stamp_s = 0.0;
+    double time_s = 0.0;  // wall time of the frame, without decoding its files
+    std::string error;    // why it could not be read; empty where it could
+};
+
+// Covariance as ROS has it: of (x y z, rotation about x y z) in the fixed axes of the camera frame, from that of the
+// right perturbation (rotation first, object axes) of camera_from_object. For small noise: A C A^T, A = [[0, R], [R,
+// 0]].
+Matrix6d ros_covariance(const Matrix6d& covariance, const Pose& camera_from_object);
+
+std::string first_log_line(const RunDescription& run);
+// Without a pose the keys that describe one are left out.
+std::string frame_log_line(const FrameReport& frame, const UpdateResult& result);
+
+}  // namespace nearpose::program

@@ -1,0 +1,68 @@
+// Where the frames of an estimation come from: a BOP scene or a folder of point clouds.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/data_set/bop_scene.hpp"
+#include "core/camera.hpp"
+#include "core/observation.hpp"
+#include "core/pose.hpp"
+
+namespace nearpose::program {
+
+struct FrameInfo {
+    int id = 0;
+    double stamp_s = 0.0;
+    PinholeCamera camera;
+    std::optional<Pose> camera_from_world;  // the measured camera motion
+};
+
+// A frame's files, decoded: a depth image with or without a mask, or a cloud.
+struct FrameData {
+    DepthImage depth;
+    std::optional<Mask> mask;
+    std::vector<Eigen::Vector3f> points_in_camera;  // [m]; used where there is no depth image
+};
+
+class FrameSource {
+  public:
+    virtual ~FrameSource() = default;
+
+    int scene_id() const { return scene_id_; }
+    const std::vector<FrameInfo>& frames() const { return frames_; }
+    // What the user should know before the run; empty: nothing.
+    const std::string& notice() const { return notice_; }
+
+    // Throws std::runtime_error naming the file and the cause; the other frames are not concerned.
+    virtual FrameData load(std::size_t index) const = 0;
+
+  protected:
+    int scene_id_ = 0;
+    std::vector<FrameInfo> frames_;
+    std::string notice_;
+};
+
+struct MaskOptions {
+    bool use = true;
+    int object_id = 1;
+    std::optional<int> index;  // KKKKKK of the files; else from scene_gt.json, else 0
+};
+
+std::unique_ptr<FrameSource> open_bop_source(const std::filesystem::path& scene, const data_set::SceneOptions& options,
+                                             const MaskOptions& masks);
+
+// Clouds in the camera's frame, one a file. A frame's number is the number that its file's name ends in where all
+// names have one of their own, else its place. Points are the object's alone where `segmented`.
+std::unique_ptr<FrameSource> open_cloud_source(const std::filesystem::path& folder,
+                                               const std::filesystem::path& camera_json,
+                                               const data_set::SceneOptions& options, bool segmented);
+
+// The decoded frame as the estimator takes it. An empty FrameData gives an observation in which nothing is seen.
+Observation observe_frame(const FrameInfo& frame, const FrameData& data);
+
+}  // namespace nearpose::program

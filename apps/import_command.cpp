@@ -1,0 +1,92 @@
+#include "apps/import_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "apps/console.hpp"
+#include "apps/data_set/number_text.hpp"
+#include "apps/import/import.hpp"
+#include "apps/import/import_model.hpp"
+#include "apps/model_input.hpp"
+
+namespace nearpose::program {
+namespace {
+
+struct ImportOptions {
+    std::filesystem::path realsense_raw, open3d, tum;
+    ModelOptions model;
+    std::filesystem::path camera, out;
+    double depth_unit_m = 0.001;
+    double units_per_metre = 5000.0;
+    double fps = 30.0;
+    int id = 1;
+};
+
+void check(const ImportOptions& options) {
+    const int sources = static_cast<int>(!options.realsense_raw.empty()) + static_cast<int>(!options.open3d.empty()) +
+                        static_cast<int>(!options.tum.empty()) + static_cast<int>(!options.model.model.empty());
+    if (sources != 1) throw BadUse("exactly one of --realsense-raw, --open3d, --tum and --model is needed");
+    const bool needs_camera = !options.realsense_raw.empty() || !options.tum.empty();
+    if (needs_camera && options.camera.empty()) {
+        throw BadUse("--camera is needed: such recordings do not hold the depth stream's intrinsics");
+    }
+    if (!needs_camera && !options.camera.empty()) throw BadUse("--camera is not used with this input");
+}
+
+int report(const std::vector<std::string>& warnings, const std::string& summary, const SharedOptions& shared) {
+    for (const std::string& warning : warnings) print_notice(warning, shared.quiet);
+    print(summary + "\n");
+    return kSuccess;
+}
+
+int import_bop_model(const ImportOptions& options, const SharedOptions& shared) {
+    const data_set::ModelImportSummary summary =
+        data_set::import_model({options.model.model, model_unit(options.model), options.id, options.out});
+    return report(
+        summary.warnings,
+        summary.file.string() + ": diameter " + data_set::format_fixed(1e3 * summary.info.diameter_m, 2) + " mm",
+        shared);
+}
+
+data_set::ImportSummary import_recording(const ImportOptions& options) {
+    if (!options.realsense_raw.empty()) {
+        return data_set::import_realsense_raw(
+            {options.realsense_raw, options.camera, options.depth_unit_m, options.out});
+    }
+    if (!options.tum.empty()) {
+        return data_set::import_tum({options.tum, options.camera, options.units_per_metre, options.out});
+    }
+    return data_set::import_open3d({options.open3d, options.out, options.fps});
+}
+
+int import_any(const ImportOptions& options, const SharedOptions& shared) {
+    check(options);
+    if (!options.model.model.empty()) return import_bop_model(options, shared);
+    const data_set::ImportSummary summary = import_recording(options);
+    return report(summary.warnings,
+                  summary.scene.string() + ": " + std::to_string(summary.frames) + " frames, depth_scale " +
+                      data_set::format_number(summary.depth_scale_mm) + " mm",
+                  shared);
+}
+
+}  // namespace
+
+void add_import_command(CLI::App& app, const SharedOptions& shared, Run& run) {
+    auto options = std::make_shared<ImportOptions>();
+    CLI::App* command = app.add_subcommand("import", "Recordings and models of other tools into the BOP layout");
+    command->add_option("--realsense-raw", options->realsense_raw, "Folder of the .raw files of `rs-convert -d -r`");
+    command->add_option("--open3d", options->open3d, "Folder of Open3D frames: depth/, intrinsic.json");
+    command->add_option("--tum", options->tum, "Folder of a TUM RGB-D recording: depth.txt, depth/");
+    add_model_file_options(*command, options->model);
+    command->add_option("--camera", options->camera, "camera.json of the depth stream (cx cy fx fy width height)");
+    command->add_option("--depth-unit-m", options->depth_unit_m, "RealSense's \"Depth Units\": metres per count")
+        ->check(CLI::Range(1e-7, 1.0));
+    command->add_option("--units-per-metre", options->units_per_metre, "TUM's depth factor: counts per metre")
+        ->check(CLI::Range(1.0, 1e7));
+    command->add_option("--fps", options->fps, "Frames per second of Open3D frames")->check(CLI::Range(1e-3, 1e6));
+    command->add_option("--id", options->id, "Object number of --model")->check(CLI::Range(0, 999999));
+    command->add_option("--out", options->out, "SET/test/SCENE of a recording, SET/models of a model")->required();
+    command->callback([options, &shared, &run] { run = [options, &shared] { return import_any(*options, shared); }; });
+}
+
+}  // namespace nearpose::program

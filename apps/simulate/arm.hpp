@@ -1,0 +1,28 @@
+// The camera's motion as a robot arm that carries it would report it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/pose.hpp"
+
+namespace nearpose::simulate {
+
+struct ArmErrors {
+    // Of each reported pose, independent in every frame, along and about each of the camera's axes. A control, the
+    // difference of two poses, carries sqrt(2) of it.
+    double sigma_translation_m = 1e-4;
+    double sigma_rotation_rad = 3.4906585e-4;  // 0.02 degrees
+    // Of the calibration between hand and camera: the same in all frames, of this size in a drawn direction.
+    double hand_eye_translation_m = 0.0;
+    double hand_eye_rotation_rad = 0.0;
+};
+
+// Throws std::invalid_argument naming field, value and bound.
+void validate(const ArmErrors& errors);
+
+// camera_from_world of every frame. The object stands still at a drawn pose in the world.
+std::vector<Pose> measured_motion(const std::vector<Pose>& camera_from_object, const ArmErrors& errors,
+                                  std::uint64_t seed);
+
+}  // namespace nearpose::simulate

@@ -1,0 +1,17 @@
+// What the simulation draws random numbers for: addresses of its streams beside the estimator's own.
+#pragma once
+
+#include "core/random.hpp"
+
+namespace nearpose::simulate {
+
+inline constexpr auto kPathDraw = static_cast<RandomPurpose>(100);        // the camera's path
+inline constexpr auto kWorldDraw = static_cast<RandomPurpose>(101);       // where the world frame is
+inline constexpr auto kHandEyeDraw = static_cast<RandomPurpose>(102);     // constant error of the measured motion
+inline constexpr auto kArmDraw = static_cast<RandomPurpose>(103);         // error of the measured motion in a frame
+inline constexpr auto kPixelDraw = static_cast<RandomPurpose>(104);       // smoothed noise of a frame's pixel
+inline constexpr auto kPixelEventDraw = static_cast<RandomPurpose>(105);  // chance events at a frame's pixel
+inline constexpr auto kPatchDraw = static_cast<RandomPurpose>(107);       // nodes of a frame's drop-out patches
+inline constexpr auto kBiasDraw = static_cast<RandomPurpose>(106);        // nodes of the sensor's fixed error field
+
+}  // namespace nearpose::simulate

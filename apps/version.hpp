@@ -1,0 +1,11 @@
+// What this build is made of.
+#pragma once
+
+#include <string>
+
+namespace nearpose::program {
+
+// Several lines: version, source revision, compiler, versions of the libraries that decide about results.
+std::string version_text();
+
+}  // namespace nearpose::program
