@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <numeric>
 #include <sstream>
 #include <string>
@@ -70,10 +71,27 @@ const CLI::App* chosen_command(const CLI::App& app) {
     return chosen.empty() ? nullptr : chosen.front();
 }
 
+std::string word_of_command(const CLI::App& app) {
+    const CLI::App* command = chosen_command(app);
+    return command == nullptr ? "" : command->get_name();
+}
+
 int bad_use(const std::string& problem, const CLI::App* command) {
     const std::string help = command == nullptr ? "nearpose --help" : "nearpose " + command->get_name() + " --help";
     print_error(problem + "; see `" + help + "`");
     return kBadUse;
+}
+
+// Empty where the file may be read. Reading a pipe would wait for ever.
+std::string config_problem(const std::string& file) {
+    constexpr std::uintmax_t kMaxConfigBytes = std::uintmax_t{1} << 20;
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) return {};  // said by the reader
+    if (!std::filesystem::is_regular_file(file, error)) return file + ": is not a regular file";
+    if (std::filesystem::file_size(file, error) > kMaxConfigBytes || error) {
+        return file + ": is too large for a file of options";
+    }
+    return {};
 }
 
 // What is known of an option that nobody knows.
@@ -118,8 +136,8 @@ struct Shell {
         app.option_defaults()->always_capture_default();
         app.fallthrough();
         app.allow_config_extras(CLI::config_extras_mode::error);
-        app.footer(kFooter);
-        app.set_config("--config", "", "File with options: those of estimate under [estimate], and so on (INI, TOML)");
+        app.set_config("--config", "", "File with options: those of estimate under [estimate], and so on (INI, TOML)")
+            ->check(config_problem, "", "config");
         app.add_flag("--print-config", wants_config, "Print the command's options as a file for --config, and end")
             ->configurable(false);
         app.add_flag("--quiet", shared.quiet, "No progress bar and no notices");
@@ -134,6 +152,7 @@ struct Shell {
             command->fallthrough();
             command->footer(command->get_footer() + (command->get_footer().empty() ? "" : "\n\n") + kFooter);
         }
+        app.footer(kFooter);  // last: commands inherit it where it is there before them
     }
 };
 
@@ -181,6 +200,8 @@ int run_shell(Shell& shell, int argc, const char* const* argv) {
     const int ended = parse(shell, argc, argv);
     if (ended >= 0) return ended;
     if (!shell.run) return bad_use("no command given", nullptr);
+    // These look at interrupted() between frames; the others just end at the first Ctrl-C.
+    if (word_of_command(shell.app) == "estimate" || word_of_command(shell.app) == "simulate") catch_interrupts();
     try {
         return shell.run();
     } catch (const BadUse& error) {
@@ -191,7 +212,7 @@ int run_shell(Shell& shell, int argc, const char* const* argv) {
 }  // namespace
 
 int run_program(int argc, const char* const* argv) {
-    catch_signals();
+    ignore_closed_pipes();
     try {
         Shell shell;
         return run_shell(shell, argc, argv);

@@ -66,12 +66,15 @@ bool interrupted() {
     return stop_requested != 0;
 }
 
-void catch_signals() {
+void catch_interrupts() {
     struct sigaction action = {};
     action.sa_handler = request_stop;
     action.sa_flags = static_cast<int>(SA_RESTART | SA_RESETHAND);  // a second Ctrl-C ends the program at once
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
+}
+
+void ignore_closed_pipes() {
     struct sigaction ignore = {};
     ignore.sa_handler = SIG_IGN;  // a closed pipe shows as a failed write instead
     sigaction(SIGPIPE, &ignore, nullptr);

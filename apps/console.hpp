@@ -18,9 +18,10 @@ void print_notice(std::string_view message, bool quiet);
 void print(std::string_view text);
 
 // True after Ctrl-C (SIGINT) or SIGTERM. A command asks once a frame, finishes what it is writing, and returns
-// kInterrupted. Signals are caught from the start of the program on.
+// kInterrupted. Without catch_interrupts() the signals end the program at once.
 bool interrupted();
-void catch_signals();
+void catch_interrupts();
+void ignore_closed_pipes();  // writing to one fails instead of ending the program
 
 // A bar with the time left; drawn only where the standard error stream is a terminal and `quiet` is not set. Messages
 // may be printed between two steps: the bar clears its line before them.

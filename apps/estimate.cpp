@@ -1,12 +1,14 @@
 #include "apps/estimate.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
 #include <numbers>
 
 #include "apps/console.hpp"
+#include "apps/data_set/number_text.hpp"
 #include "apps/data_set/result_csv.hpp"
 #include "apps/estimate_outputs.hpp"
 #include "apps/estimator_setup.hpp"
@@ -34,7 +36,7 @@ struct EstimateOptions {
 };
 
 struct Tally {
-    int frames = 0, unread = 0, with_pose = 0;
+    int frames = 0, unread = 0, seen = 0;
 };
 
 void add_input_options(CLI::App& command, EstimateOptions& options) {
@@ -72,7 +74,10 @@ void add_estimator_options(CLI::App& command, EstimateOptions& options) {
 }
 
 void add_output_options(CLI::App& command, OutputOptions& options) {
-    command.add_option("--out", options.out, "BOP result file to write; - is the standard output")->required();
+    command
+        .add_option("--out", options.out,
+                    "BOP result file to write (bop_toolkit wants METHOD_DATASET-SPLIT.csv); - is the standard output")
+        ->required();
     command.add_option("--log", options.log, "Log to write: a JSON object a line");
     command.add_option("--trajectory", options.trajectory, "Trajectory to write: TUM rows, metres");
     command
@@ -146,6 +151,24 @@ std::optional<Pose> control_of(const FrameSource& source, std::size_t index) {
     return *now * before->inverse();
 }
 
+// What a frame that could be read had to offer.
+std::string why_unseen(const FrameData& data, const Observation& observation) {
+    if (observation.num_candidates() > 0) return std::to_string(observation.num_candidates()) + " measured points";
+    std::vector<float> depths_m;
+    for (std::size_t i = 0; i < data.depth.depth_m.size(); ++i) {
+        const bool wanted = !data.mask || data.mask->value[i] != 0;
+        if (wanted && data.depth.depth_m[i] > 0.0F) depths_m.push_back(data.depth.depth_m[i]);
+    }
+    for (const Eigen::Vector3f& point : data.points_in_camera) depths_m.push_back(point.z());
+    if (depths_m.empty()) return "nothing is measured in its mask";
+    const auto middle = depths_m.begin() + static_cast<std::ptrdiff_t>(depths_m.size() / 2);
+    std::nth_element(depths_m.begin(), middle, depths_m.end());
+    const SensorModel& sensor = observation.sensor();
+    return "no measurement lies in the image and at " + data_set::format_number(sensor.min_range_m) + " to " +
+           data_set::format_number(sensor.max_range_m) + " m; half are nearer than " +
+           data_set::format_fixed(*middle, 4) + " m: is the depth's scale right?";
+}
+
 void run_frame(const EstimateOptions& options, const SharedOptions& shared, const FrameSource& source,
                std::size_t index, PoseEstimator& estimator, EstimateOutputs& outputs, Tally& tally) {
     const FrameInfo& frame = source.frames()[index];
@@ -171,11 +194,10 @@ void run_frame(const EstimateOptions& options, const SharedOptions& shared, cons
         ++tally.unread;
         print_error(name + ": " + report.error + consequence);
     } else if (result.status != UpdateStatus::kEstimated) {
-        print_notice(
-            name + ": the object is not seen (" + std::to_string(result.points_observed) + " points)" + consequence,
-            shared.quiet);
+        print_notice(name + ": the object is not seen (" + why_unseen(data, observation) + ")" + consequence,
+                     shared.quiet);
     }
-    if (result.status != UpdateStatus::kNoPose) ++tally.with_pose;
+    if (result.status == UpdateStatus::kEstimated) ++tally.seen;
     outputs.append(frame, report, observation, result);
 }
 
@@ -188,8 +210,9 @@ int exit_code(const Tally& tally) {
         print_error("none of the " + std::to_string(tally.frames) + " frames could be read");
         return kFailure;
     }
-    if (tally.with_pose == 0) {
-        print_error("the object was seen in none of the " + std::to_string(tally.frames) + " frames");
+    if (tally.seen == 0) {
+        print_error("the object was seen in none of the " + std::to_string(tally.frames) +
+                    " frames; check the model's unit, the depth's scale and the start");
         return kFailure;
     }
     if (tally.unread == 0) return kSuccess;

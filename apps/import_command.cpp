@@ -33,6 +33,13 @@ void check(const ImportOptions& options) {
     if (!needs_camera && !options.camera.empty()) throw BadUse("--camera is not used with this input");
 }
 
+// Two folders up camera.json is written, and `estimate` takes the number for the scene's.
+void check_scene_folder(const std::filesystem::path& out) {
+    const std::string name = (out.has_filename() ? out : out.parent_path()).filename().string();
+    if (!name.empty() && name.find_first_not_of("0123456789") == std::string::npos) return;
+    throw BadUse("--out " + out.string() + ": a recording goes to SET/test/NUMBER, for example mine/test/000001");
+}
+
 int report(const std::vector<std::string>& warnings, const std::string& summary, const SharedOptions& shared) {
     for (const std::string& warning : warnings) print_notice(warning, shared.quiet);
     print(summary + "\n");
@@ -62,6 +69,7 @@ data_set::ImportSummary import_recording(const ImportOptions& options) {
 int import_any(const ImportOptions& options, const SharedOptions& shared) {
     check(options);
     if (!options.model.model.empty()) return import_bop_model(options, shared);
+    check_scene_folder(options.out);
     const data_set::ImportSummary summary = import_recording(options);
     return report(summary.warnings,
                   summary.scene.string() + ": " + std::to_string(summary.frames) + " frames, depth_scale " +
@@ -85,7 +93,7 @@ void add_import_command(CLI::App& app, const SharedOptions& shared, Run& run) {
         ->check(CLI::Range(1.0, 1e7));
     command->add_option("--fps", options->fps, "Frames per second of Open3D frames")->check(CLI::Range(1e-3, 1e6));
     command->add_option("--id", options->id, "Object number of --model")->check(CLI::Range(0, 999999));
-    command->add_option("--out", options->out, "SET/test/SCENE of a recording, SET/models of a model")->required();
+    command->add_option("--out", options->out, "SET/test/NUMBER of a recording, SET/models of a model")->required();
     command->callback([options, &shared, &run] { run = [options, &shared] { return import_any(*options, shared); }; });
 }
 

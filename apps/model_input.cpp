@@ -40,6 +40,9 @@ void check(const ModelOptions& options) {
         throw BadUse("a model is needed: --models DIR --object ID, or --model FILE --unit mm");
     }
     if (!options.model.empty() && !options.models.empty()) throw BadUse("--model and --models exclude each other");
+    if (!options.model.empty() && std::filesystem::is_directory(options.model)) {
+        throw BadUse("--model " + options.model.string() + " is a folder; --models takes a folder of BOP models");
+    }
     if (options.model.empty() && !options.unit.empty()) {
         throw BadUse("--unit belongs to --model: BOP models are in millimetres");
     }

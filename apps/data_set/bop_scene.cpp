@@ -46,12 +46,17 @@ Frame read_frame(const fs::path& folder, int id, const JsonValue& entry) {
     return frame;
 }
 
+double stamp_of(const JsonValue& entry) {
+    if (!entry.find("timestamp"))
+        throw entry.error("has no timestamp, but other frames have: give all of them or none");
+    return entry.at("timestamp").number();
+}
+
 // Stamps either for all frames or for none, and growing: a time that jumps back would turn every motion round.
 void set_stamps(std::vector<Frame>& frames, const std::vector<JsonValue>& entries, const SceneOptions& options,
                 bool has_timestamps) {
     for (std::size_t i = 0; i < frames.size(); ++i) {
-        frames[i].stamp_s =
-            has_timestamps ? entries[i].at("timestamp").number() : frames[i].id / options.frames_per_second;
+        frames[i].stamp_s = has_timestamps ? stamp_of(entries[i]) : frames[i].id / options.frames_per_second;
         if (i > 0 && !(frames[i].stamp_s > frames[i - 1].stamp_s)) {
             throw entries[i].error("timestamp " + format_number(frames[i].stamp_s) +
                                    " is not later than that of frame " + std::to_string(frames[i - 1].id));
@@ -101,7 +106,8 @@ ImageSize image_size(const fs::path& folder, const std::vector<Frame>& frames) {
     if (found && wanted && !(*found == *wanted)) {
         throw std::runtime_error(camera_file.string() + ": says " + std::to_string(wanted->width) + " x " +
                                  std::to_string(wanted->height) + " pixels, but the depth images have " +
-                                 std::to_string(found->width) + " x " + std::to_string(found->height));
+                                 std::to_string(found->width) + " x " + std::to_string(found->height) +
+                                 "; it must be of the depth stream at its recorded size");
     }
     return wanted ? *wanted : *found;
 }
@@ -148,6 +154,10 @@ BopScene open_scene(const fs::path& folder, const SceneOptions& options) {
     if (!fs::is_directory(folder)) throw std::runtime_error(folder.string() + ": is not a folder");
     BopScene scene;
     scene.folder = folder;
+    if (!fs::exists(folder / "scene_camera.json") && fs::is_directory(folder / "test")) {
+        throw std::runtime_error(folder.string() + ": is a data set, not a scene; name one below " +
+                                 (folder / "test").string());
+    }
     const JsonFile file(folder / "scene_camera.json");
     std::vector<JsonValue> entries;
     for (const auto& [id, entry] : file.root().numbered_members()) {

@@ -182,7 +182,11 @@ void BopSceneWriter::finish() const {
         write_scene_gt(folder_ / "scene_gt.json", frames_);
         write_scene_gt_info(folder_ / "scene_gt_info.json", frames_);
     }
-    write_camera_json(camera_json_path(folder_), frames_.front().camera, frames_.front().depth_scale_mm);
+    // One that is there may be the user's own, or of the set's other scenes.
+    const fs::path camera_file = camera_json_path(folder_);
+    if (!fs::exists(camera_file)) {
+        write_camera_json(camera_file, frames_.front().camera, frames_.front().depth_scale_mm);
+    }
     write_scene_camera(folder_ / "scene_camera.json", frames_);  // last: its presence says that the scene is whole
 }
 

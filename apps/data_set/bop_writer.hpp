@@ -70,8 +70,8 @@ class BopSceneWriter {
     // For depth whose file the caller writes itself, to depth_path(scene_folder, record.id).
     void add_frame(const FrameRecord& record);
 
-    // Writes scene_camera.json, ../../camera.json and, where records have objects, scene_gt.json and
-    // scene_gt_info.json.
+    // Writes scene_camera.json, ../../camera.json where there is none yet and, where records have objects,
+    // scene_gt.json and scene_gt_info.json.
     void finish() const;
 
     const std::vector<FrameRecord>& frames() const { return frames_; }

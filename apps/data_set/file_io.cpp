@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <system_error>
 #include <utility>
@@ -36,6 +37,7 @@ class Descriptor {
     }
     Descriptor(const Descriptor&) = delete;
     Descriptor& operator=(const Descriptor&) = delete;
+    Descriptor(Descriptor&& other) noexcept : value_(std::exchange(other.value_, -1)) {}
     int get() const { return value_; }
     // Network file systems report a full disk only here.
     bool close() { return ::close(std::exchange(value_, -1)) == 0; }
@@ -50,9 +52,8 @@ void write_and_close(Descriptor& file, std::string_view bytes, const std::string
     if (!file.close()) throw system_error(name, "cannot be closed", errno);
 }
 
-}  // namespace
-
-std::string read_whole_file(const std::filesystem::path& path, std::uintmax_t max_bytes) {
+// Opens for reading; throws where it is anything but a regular file.
+Descriptor open_regular(const std::filesystem::path& path, std::uintmax_t& size) {
     const std::string name = path.string();
     // Not blocking: opening a pipe that nobody writes to would wait for ever.
     Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
@@ -60,11 +61,11 @@ std::string read_whole_file(const std::filesystem::path& path, std::uintmax_t ma
     struct stat status {};
     if (::fstat(file.get(), &status) != 0) throw system_error(name, "cannot be examined", errno);
     if (!S_ISREG(status.st_mode)) throw std::runtime_error(name + ": is not a regular file");
-    const auto size = static_cast<std::uintmax_t>(status.st_size);
-    if (size > max_bytes) {
-        throw std::runtime_error(name + ": has " + std::to_string(size) + " bytes, more than the limit of " +
-                                 std::to_string(max_bytes));
-    }
+    size = static_cast<std::uintmax_t>(status.st_size);
+    return file;
+}
+
+std::string read_bytes(const Descriptor& file, std::uintmax_t size, const std::string& name) {
     std::string bytes(size, '\0');
     std::size_t done = 0;
     while (done < bytes.size()) {
@@ -75,6 +76,24 @@ std::string read_whole_file(const std::filesystem::path& path, std::uintmax_t ma
         done += static_cast<std::size_t>(count);
     }
     return bytes;
+}
+
+}  // namespace
+
+std::string read_whole_file(const std::filesystem::path& path, std::uintmax_t max_bytes) {
+    std::uintmax_t size = 0;
+    const Descriptor file = open_regular(path, size);
+    if (size > max_bytes) {
+        throw std::runtime_error(path.string() + ": has " + std::to_string(size) + " bytes, more than the limit of " +
+                                 std::to_string(max_bytes));
+    }
+    return read_bytes(file, size, path.string());
+}
+
+std::string read_file_start(const std::filesystem::path& path, std::uintmax_t count) {
+    std::uintmax_t size = 0;
+    const Descriptor file = open_regular(path, size);
+    return read_bytes(file, std::min(size, count), path.string());
 }
 
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes) {

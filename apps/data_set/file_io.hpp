@@ -19,6 +19,8 @@ class ClosedPipe : public std::runtime_error {
 // The bytes of a regular file. Throws std::runtime_error where it is missing, no regular file (a pipe would block for
 // ever), unreadable, or longer than `max_bytes`; nothing is allocated before the size is known.
 std::string read_whole_file(const std::filesystem::path& path, std::uintmax_t max_bytes);
+// Its first `count` bytes, or all where it is shorter.
+std::string read_file_start(const std::filesystem::path& path, std::uintmax_t count);
 
 // Writes to a temporary name in the same folder and renames, so that a reader sees the old file or the whole new one. A
 // link is followed; a device or pipe is written in place. Throws std::runtime_error where any step fails, also on a

@@ -59,13 +59,21 @@ std::string with_place(const std::string& name, const std::string& place, const 
     return name + ": " + (place.empty() ? "" : place + ": ") + problem;
 }
 
+// Without the library's own number of the error: "[json.exception.parse_error.101] ".
+std::string cause_of(const nlohmann::json::exception& error) {
+    const std::string text = error.what();
+    const std::size_t end = text.find("] ");
+    return text.front() == '[' && end != text.npos ? text.substr(end + 2) : text;
+}
+
 nlohmann::json parse(const std::string& text, const std::string& name) {
     if (text.size() > kMaxJsonBytes) throw std::runtime_error(name + ": longer than any JSON file that is read");
     Watcher watcher;
     try {
         return nlohmann::json::parse(text, std::ref(watcher));
     } catch (const nlohmann::json::exception& error) {
-        throw std::runtime_error(with_place(name, watcher.place(), std::string("is not JSON: ") + error.what()));
+        throw std::runtime_error(
+            with_place(name, watcher.place(), "is not JSON (nor are NaN and Infinity): " + cause_of(error)));
     } catch (const std::runtime_error& error) {
         throw std::runtime_error(with_place(name, watcher.place(), error.what()));
     }

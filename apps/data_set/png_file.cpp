@@ -3,10 +3,8 @@
 #include <spng.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -19,9 +17,6 @@ namespace nearpose::data_set {
 namespace {
 
 using Context = std::unique_ptr<spng_ctx, decltype(&spng_ctx_free)>;
-
-// Twice the raw bytes of the largest picture that is read.
-constexpr std::uintmax_t kMaxPngBytes = std::uintmax_t{2} << 30;
 
 std::runtime_error png_error(const std::filesystem::path& path, const std::string& problem) {
     return std::runtime_error(path.string() + ": " + problem);
@@ -43,6 +38,25 @@ void check_cap(const std::filesystem::path& path, std::uint32_t width, std::uint
                               " a side are read");
 }
 
+constexpr std::size_t kHeaderBytes = 24;  // signature, length and name of IHDR, width, height
+constexpr std::size_t kWidthAt = 16, kHeightAt = 20;
+
+bool has_png_header(std::string_view bytes) {
+    return bytes.size() >= kHeaderBytes && bytes.starts_with("\x89PNG\r\n\x1a\n");
+}
+
+std::uint32_t big_endian_at(std::string_view bytes, std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
+    return value;
+}
+
+// Room for the widest pixels (four channels of 16 bits) of an image that does not compress, and for other chunks.
+std::uintmax_t max_png_bytes(std::string_view header) {
+    constexpr std::uintmax_t kBytesPerPixel = 8, kOther = std::uintmax_t{16} << 20;
+    return kBytesPerPixel * big_endian_at(header, kWidthAt) * big_endian_at(header, kHeightAt) + kOther;
+}
+
 // An opened PNG whose header has been checked; nothing of the image's size is allocated yet.
 struct OpenPng {
     std::string bytes;
@@ -52,7 +66,13 @@ struct OpenPng {
 
 OpenPng open_png(const std::filesystem::path& path, ImageSize expected) {
     OpenPng png;
-    png.bytes = read_whole_file(path, kMaxPngBytes);
+    png.bytes = read_file_start(path, kHeaderBytes);
+    if (!has_png_header(png.bytes) && png.bytes.size() == kHeaderBytes) throw png_error(path, "is not a PNG");
+    // Of a shorter file the library says what is wrong.
+    if (has_png_header(png.bytes)) {
+        check_cap(path, big_endian_at(png.bytes, kWidthAt), big_endian_at(png.bytes, kHeightAt));
+        png.bytes = read_whole_file(path, max_png_bytes(png.bytes));
+    }
     png.context.reset(spng_ctx_new(0));
     if (!png.context) throw std::bad_alloc();
     check(spng_set_png_buffer(png.context.get(), png.bytes.data(), png.bytes.size()), path);
@@ -133,22 +153,10 @@ std::size_t pixel_count(int width, int height) {
 
 ImageSize read_png_size(const std::filesystem::path& path) {
     // The header alone, by hand: a scene asks this of all its images before it starts.
-    constexpr std::size_t kHeaderBytes = 24;  // signature, length and name of IHDR, width, height
-    std::array<unsigned char, kHeaderBytes> bytes{};
-    std::error_code ignored;
-    std::ifstream file;
-    if (std::filesystem::is_regular_file(path, ignored)) file.open(path, std::ios::binary);
-    if (!file.is_open()) throw png_error(path, "cannot be opened");
-    file.read(reinterpret_cast<char*>(bytes.data()), kHeaderBytes);
-    constexpr std::array<unsigned char, 8> kSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-    if (!file || !std::equal(kSignature.begin(), kSignature.end(), bytes.begin()))
-        throw png_error(path, "is not a PNG");
-    const auto big_endian = [&](std::size_t at) {
-        return std::uint32_t{bytes[at]} << 24 | std::uint32_t{bytes[at + 1]} << 16 | std::uint32_t{bytes[at + 2]} << 8 |
-               std::uint32_t{bytes[at + 3]};
-    };
-    const std::uint32_t width = big_endian(16);
-    const std::uint32_t height = big_endian(20);
+    const std::string bytes = read_file_start(path, kHeaderBytes);
+    if (!has_png_header(bytes)) throw png_error(path, "is not a PNG");
+    const std::uint32_t width = big_endian_at(bytes, kWidthAt);
+    const std::uint32_t height = big_endian_at(bytes, kHeightAt);
     check_cap(path, width, height);
     return {static_cast<int>(width), static_cast<int>(height)};
 }

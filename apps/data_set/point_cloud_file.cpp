@@ -13,7 +13,7 @@
 namespace nearpose::data_set {
 namespace {
 
-constexpr std::uintmax_t kMaxCloudBytes = std::uintmax_t{4} << 30;
+constexpr std::uintmax_t kMaxCloudBytes = std::uintmax_t{1} << 30;
 constexpr std::size_t kMaxHeaderLine = 4096;
 
 bool is_measured(const Eigen::Vector3f& point) {

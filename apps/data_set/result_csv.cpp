@@ -132,15 +132,17 @@ std::vector<PoseRow> read_pose_csv(const std::filesystem::path& path) {
 }
 
 std::optional<std::string> bop_file_name_notice(const std::filesystem::path& path, const std::string& data_set) {
-    if (path == "-" || is_bop_file_name(path)) return std::nullopt;
+    const std::string given = path.filename().string();
+    const bool meant_for_it =
+        given.find("-test") != given.npos || given.find("-val") != given.npos || given.find("-train") != given.npos;
+    if (!meant_for_it || is_bop_file_name(path)) return std::nullopt;
     std::string name;
     for (const char c : data_set) {
         if (c != '_' && c != '-' && c != '.') name += c;
     }
     if (name.empty()) name = "dataset";
-    return path.filename().string() +
-           ": bop_toolkit could not parse this name (METHOD_DATASET-SPLIT.csv); it would take nearpose_" + name +
-           "-test.csv";
+    return given + ": bop_toolkit could not parse this name (METHOD_DATASET-SPLIT.csv); it would take nearpose_" +
+           name + "-test.csv";
 }
 
 }  // namespace nearpose::data_set

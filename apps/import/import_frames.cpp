@@ -48,6 +48,7 @@ using ReadCounts = CountImage (*)(const fs::path& file, const PinholeCamera& cam
 CountImage read_raw(const fs::path& file, const PinholeCamera& camera) {
     const std::uintmax_t expected =
         std::uintmax_t{2} * static_cast<unsigned>(camera.width) * static_cast<unsigned>(camera.height);
+    if (!fs::is_regular_file(file)) throw std::runtime_error(file.string() + ": is not a regular file");
     const std::uintmax_t size = fs::file_size(file);
     if (size != expected) {
         throw std::runtime_error(file.string() + ": has " + std::to_string(size) + " bytes, but " +

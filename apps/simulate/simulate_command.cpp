@@ -62,6 +62,8 @@ SimulationOptions simulation_options(const CommandOptions& command) {
 int simulate_recording(const CommandOptions& command, const SharedOptions& shared) {
     const SimulationOptions options = simulation_options(command);
     const bool embedded = command.model.model.empty();
+    if (embedded && !command.model.unit.empty())
+        throw BadUse("--unit belongs to --model: the built-in part needs none");
     const Mesh mesh = embedded ? simulate::embedded_engine_block() : load_model(command.model, shared);
     const ModelExtent extent = extent_of(mesh);
     const simulate::Part part = embedded ? simulate::engine_block_part(extent) : simulate::box_part(extent);

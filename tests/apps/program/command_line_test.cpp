@@ -117,6 +117,19 @@ TEST(CommandLine, ConfigurationIsReadBeforeAndAfterTheCommand) {
     expect_one_error(run_nearpose("estimate --out x --config nowhere.ini"), 2, "nowhere.ini");
 }
 
+TEST(CommandLine, APipeAsConfigurationIsRefusedAndDoesNotHang) {
+    const TinyScene scene(1);
+    const std::string pipe = scene.file("pipe.ini").string();
+    const Outcome outcome =
+        run_shell("mkfifo " + pipe + "; timeout -k 1 20 \"$NEARPOSE\" estimate --out x --config " + pipe);
+    expect_one_error(outcome, 2, "pipe.ini: is not a regular file");
+}
+
+TEST(CommandLine, HelpHasItsFooterOnce) {
+    const std::string help = run_nearpose("help estimate").out;
+    EXPECT_EQ(help.find("Exit codes"), help.rfind("Exit codes"));
+}
+
 TEST(CommandLine, PrintedConfigurationReadsBackAsItself) {
     const TinyScene scene;
     const Outcome printed = run_nearpose("estimate " + scene.input() + "--out a.csv --seed 5 --no-mask --print-config");

@@ -166,37 +166,6 @@ TEST(Estimate, FramesBeforeTheFirstPoseHaveNoRow) {
     EXPECT_EQ(lines_of(outcome.out)[1].rfind("7,1,1,", 0), 0U) << outcome.out;
 }
 
-TEST(Estimate, CloudsInTheCameraFrame) {
-    const TinyScene scene(2);
-    fs::create_directories(scene.file("clouds"));
-    for (const int frame : {0, 1}) {
-        const DepthImage depth =
-            data_set::read_depth_png(scene.scene() / ("depth/00000" + std::to_string(frame) + ".png"), 0.1);
-        std::string points;
-        int count = 0;
-        for (int pixel = 0; pixel < 160 * 120; ++pixel) {
-            if (!(depth.depth_m[pixel] > 0.0F)) continue;
-            const Eigen::Vector3d point = depth.depth_m[pixel] * scene.camera().ray(pixel % 160, pixel / 160);
-            points +=
-                std::to_string(point.x()) + " " + std::to_string(point.y()) + " " + std::to_string(point.z()) + "\n";
-            ++count;
-        }
-        const std::string n = std::to_string(count);
-        write_text(scene.file("clouds/cloud_" + std::to_string(frame + 4) + ".pcd"),
-                   "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " + n +
-                       "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + n + "\nDATA ascii\n" + points);
-    }
-    for (const char* mask : {"", "--no-mask"}) {
-        const Outcome outcome = run_nearpose(
-            "estimate --clouds " + scene.file("clouds").string() + " --camera " + scene.file("camera.json").string() +
-            " --model " + (scene.models() / "obj_000001.ply").string() +
-            " --unit mm --particles 24 --out - --initial-pose " + scene.file("start.json").string() + " " + mask);
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-        ASSERT_EQ(lines_of(outcome.out).size(), 3U) << outcome.out;
-        EXPECT_EQ(lines_of(outcome.out)[2].rfind("0,5,1,", 0), 0U) << outcome.out;
-    }
-}
-
 struct BadFrame {
     const char* name;
     std::function<void(const fs::path& scene)> spoil;  // frame 1

@@ -1,0 +1,15 @@
+// Points projected onto a depth buffer; shared by the generators that do not cast rays.
+#pragma once
+
+#include "core/camera.hpp"
+#include "core/pose.hpp"
+#include "core/view_generator.hpp"
+#include "raycast/surface_samples.hpp"
+
+namespace nearpose {
+
+// Of the points that fall into a pixel the nearest is kept, and of equally near ones the first. Pixels ascend; normals
+// are turned towards the camera. Throws std::invalid_argument if the pose or the camera is not valid.
+View nearest_points(const SurfaceSamples& samples, const Pose& camera_from_object, const PinholeCamera& camera);
+
+}  // namespace nearpose

@@ -1,0 +1,167 @@
+#include "raycast/mesh_loader.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdio>
+#include <fstream>
+#include <stdexcept>
+#include <utility>
+
+#include "raycast/internal/mesh_files.hpp"
+#include "raycast/internal/point_cloud.hpp"
+
+namespace nearpose {
+namespace {
+
+struct UnitName {
+    LengthUnit unit;
+    const char* symbol;
+    const char* word;
+    double metres;
+};
+
+constexpr std::array<UnitName, 4> kUnits{{{LengthUnit::kMetre, "m", "metre", 1.0},
+                                          {LengthUnit::kMillimetre, "mm", "millimetre", 1e-3},
+                                          {LengthUnit::kCentimetre, "cm", "centimetre", 1e-2},
+                                          {LengthUnit::kInch, "in", "inch", 0.0254}}};
+
+const UnitName& entry_of(LengthUnit unit) {
+    return *std::find_if(kUnits.begin(), kUnits.end(), [&](const UnitName& entry) { return entry.unit == unit; });
+}
+
+Mesh read_by_extension(const std::filesystem::path& path, const MeshLimits& limits, MeshRepair& repair) {
+    std::string extension = path.extension().string();
+    for (char& letter : extension) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+    const std::string source = path.string();
+    constexpr const char* kWhatToDo = "export the model as PLY, STL or OBJ";
+    if (extension == ".dae" || extension == ".3mf") {
+        throw std::runtime_error(source + ": " + extension +
+                                 " files are not read, since their importer fails on damaged " + "files; " + kWhatToDo);
+    }
+    constexpr std::array<std::string_view, 6> kExtensions{".ply", ".stl", ".obj", ".off", ".gltf", ".glb"};
+    if (std::find(kExtensions.begin(), kExtensions.end(), extension) == kExtensions.end()) {
+        throw std::runtime_error(source +
+                                 ": models are read from .ply, .stl, .obj, .off, .gltf and .glb files, not \"" +
+                                 extension + "\"; " + kWhatToDo);
+    }
+    const std::string bytes = read_regular_file(path, limits.max_file_bytes);
+    if (extension == ".ply") return read_ply(bytes, source, limits, repair);
+    if (extension == ".stl") return read_stl(bytes, source, limits, repair);
+    if (extension == ".obj") return read_obj(bytes, source, limits, repair);
+    if (extension == ".off") return read_off(bytes, source, limits, repair);
+    return read_gltf(bytes, source, path.parent_path(), limits, repair);
+}
+
+std::string rounded(double value) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.3g", value);
+    return text.data();
+}
+
+// A wrong unit is the most common fault of a model, and nothing later can tell it from a strange scene.
+void require_plausible_size(const Mesh& mesh, const std::string& source, LengthUnit unit, const MeshLimits& limits) {
+    const double diameter_m = extent_of(mesh).diameter_m();
+    const bool too_large = !(diameter_m <= limits.max_diameter_m);
+    if (!too_large && diameter_m >= limits.min_diameter_m) return;
+
+    std::string message = source + ": read in " + entry_of(unit).word + "s this is a part of " + rounded(diameter_m) +
+                          " metres, " + (too_large ? "larger than " : "smaller than ") +
+                          rounded(too_large ? limits.max_diameter_m : limits.min_diameter_m) + " m";
+    // Millimetres first: CAD exports are mostly in them.
+    for (LengthUnit other : {LengthUnit::kMillimetre, LengthUnit::kMetre, LengthUnit::kInch}) {
+        const double other_m = diameter_m / metres_per(unit) * metres_per(other);
+        if (other == unit || !(other_m >= 0.01 && other_m <= limits.max_diameter_m)) continue;
+        throw std::runtime_error(message + ": the file is probably in " + entry_of(other).word + "s (" +
+                                 rounded(other_m) + " m), say --unit " + to_string(other));
+    }
+    throw std::runtime_error(message + ": check the unit it was exported in");
+}
+
+// What a reader returned in `unit`, as load_mesh gives it.
+LoadedMesh finish(Mesh raw, const std::string& source, LengthUnit unit, const MeshLimits& limits,
+                  const MeshRepair& repair) {
+    LoadedMesh loaded{{}, repair};
+    const bool is_ply_cloud = raw.is_cloud() && !raw.vertices_in_object.empty();
+    for (Eigen::Vector3f& vertex : raw.vertices_in_object) {
+        const Eigen::Vector3d in_metres = vertex.cast<double>() * metres_per(unit);
+        vertex = in_metres.cast<float>();
+    }
+    loaded.mesh = clean(std::move(raw), source, &loaded.repair);
+    require_plausible_size(loaded.mesh, source, unit, limits);
+    if (is_ply_cloud) {
+        try {
+            complete_cloud(loaded.mesh);
+        } catch (const std::invalid_argument& error) {
+            throw std::runtime_error(source + ": " + error.what());
+        }
+    }
+    return loaded;
+}
+
+}  // namespace
+
+LengthUnit parse_length_unit(std::string_view text) {
+    for (const UnitName& entry : kUnits) {
+        if (text == entry.symbol || text == entry.word) return entry.unit;
+    }
+    throw std::invalid_argument("unknown unit \"" + std::string(text) + "\": say m, mm, cm or in");
+}
+
+const char* to_string(LengthUnit unit) {
+    return entry_of(unit).symbol;
+}
+
+double metres_per(LengthUnit unit) {
+    return entry_of(unit).metres;
+}
+
+std::string read_regular_file(const std::filesystem::path& path, std::uint64_t max_bytes) {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (!std::filesystem::exists(status)) throw std::runtime_error(path.string() + ": no such file");
+    if (!std::filesystem::is_regular_file(status)) throw std::runtime_error(path.string() + ": not a regular file");
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    if (error) throw std::runtime_error(path.string() + ": " + error.message());
+    if (size > max_bytes) {
+        throw std::runtime_error(path.string() + ": " + std::to_string(size) + " bytes are more than the limit of " +
+                                 std::to_string(max_bytes));
+    }
+    std::string bytes(static_cast<std::size_t>(size), '\0');
+    std::ifstream file(path, std::ios::binary);
+    if (!file.read(bytes.data(), static_cast<std::streamsize>(size))) {
+        throw std::runtime_error(path.string() + ": cannot be read");
+    }
+    return bytes;
+}
+
+void add_polygon(const int* corners, std::size_t num_corners, const std::string& source, std::int64_t max_triangles,
+                 Mesh& mesh, MeshRepair& repair) {
+    if (num_corners < 3) {
+        ++repair.triangles_degenerate;
+        return;
+    }
+    if (mesh.triangles.size() + num_corners - 2 > static_cast<std::size_t>(max_triangles)) {
+        throw std::runtime_error(source + ": more triangles than the limit of " + std::to_string(max_triangles));
+    }
+    for (std::size_t k = 2; k < num_corners; ++k) mesh.triangles.push_back({corners[0], corners[k - 1], corners[k]});
+}
+
+LoadedMesh load_mesh(const std::filesystem::path& path, LengthUnit unit, const MeshLimits& limits) {
+    MeshRepair repair;
+    Mesh raw = read_by_extension(path, limits, repair);
+    return finish(std::move(raw), path.string(), unit, limits, repair);
+}
+
+LoadedMesh load_mesh_from_bytes(std::string_view ply, const std::string& source, LengthUnit unit,
+                                const MeshLimits& limits) {
+    if (ply.size() > limits.max_file_bytes) {
+        throw std::runtime_error(source + ": " + std::to_string(ply.size()) + " bytes are more than the limit of " +
+                                 std::to_string(limits.max_file_bytes));
+    }
+    MeshRepair repair;
+    Mesh raw = read_ply(ply, source, limits, repair);
+    return finish(std::move(raw), source, unit, limits, repair);
+}
+
+}  // namespace nearpose
