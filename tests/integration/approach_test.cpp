@@ -38,7 +38,8 @@ class Approach : public testing::Test {
 
 TEST_F(Approach, DefaultMethodArrivesByFrameFifteenAndStays) {
     for (int seed = 1; seed <= num_seeds(); ++seed) {
-        const auto errors = test::run_scene(simulate(seed, 60), folder_ / "models",
+        const std::filesystem::path scene = simulate(seed, 60);
+        const auto errors = test::run_scene(scene, folder_ / "models",
                                             {"default", "raycast", true, 200, static_cast<std::uint64_t>(seed)});
         const program::PoseError worst = test::worst_after(errors, 15);
         EXPECT_LT(worst.translation_m, 0.010) << "seed " << seed;
@@ -59,7 +60,8 @@ TEST_F(Approach, EveryViewGeneratorRunsInTheFilter) {
 }
 
 TEST_F(Approach, PaperMethodRuns) {
-    const auto errors = test::run_scene(simulate(1, 6), folder_ / "models", {"paper", "raster", true, 100, 1});
+    const std::filesystem::path scene = simulate(1, 6);
+    const auto errors = test::run_scene(scene, folder_ / "models", {"paper", "raster", true, 100, 1});
     ASSERT_EQ(errors.size(), 6U);
     for (const program::FrameError& frame : errors)
         EXPECT_TRUE(frame.error && std::isfinite(frame.error->translation_m));
