@@ -24,7 +24,7 @@ std::string left_out(const MeshRepair& repair) {
 }  // namespace
 
 void add_model_file_options(CLI::App& command, ModelOptions& options) {
-    command.add_option("--model", options.model, "Model: STL, OBJ, PLY (mesh or dense point cloud), glTF, GLB");
+    command.add_option("--model", options.model, "Model: PLY (mesh or dense point cloud), STL, OBJ, OFF, glTF, GLB");
     command.add_option("--unit", options.unit, "Unit of --model: m, mm, cm or in [mm; m for glTF]")
         ->check(CLI::IsMember({"m", "mm", "cm", "in"}));
 }
