@@ -80,6 +80,8 @@ void PoseEstimator::reset() {
 }
 
 void PoseEstimator::reset(const Pose& camera_from_object, const Diffusion& spread) {
+    if (!is_valid(camera_from_object))
+        throw std::invalid_argument("PoseEstimator: the pose to start from is not a finite rigid transform");
     reset();
     particles_ =
         start_around(camera_from_object, spread, views_->extent(), options_.num_particles, options_.seed, step_);
@@ -94,7 +96,7 @@ void PoseEstimator::predict(const std::optional<Pose>& now_from_before, UpdateRe
         particles_ = systematic_resample(particles_, options_.seed, step_);
         result.resampled = true;
     }
-    if (now_from_before) {
+    if (now_from_before && is_valid(*now_from_before)) {  // a motion that is no motion was not measured
         propagate(particles_, *now_from_before);
         if (tracked_) tracked_->camera_from_object = *now_from_before * tracked_->camera_from_object;
     }

@@ -65,10 +65,12 @@ class PoseEstimator {
                   const EstimatorOptions& options);
 
     // Takes in one observation. `now_from_before` is the measured camera motion since the last update (it maps camera
-    // coordinates of the frame before to those of this one); nothing where it was not measured. Never throws for data.
+    // coordinates of the frame before to those of this one); nothing where it was not measured, and a transform that is
+    // not finite counts as that. Never throws for data.
     UpdateResult update(const Observation& observation, const std::optional<Pose>& now_from_before);
 
-    // Starts over: without a pose, or around one with a spread (standard deviations about the model's centre).
+    // Starts over: without a pose, or around one with a spread (standard deviations about the model's centre). Throws
+    // std::invalid_argument for a pose that is not valid.
     void reset();
     void reset(const Pose& camera_from_object, const Diffusion& spread);
 

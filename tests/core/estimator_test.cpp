@@ -155,6 +155,17 @@ TEST(Estimator, WithoutMeasuredNormalsItStillStarts) {
     }
 }
 
+TEST(Estimator, AMotionThatIsNotFiniteWasNotMeasured) {
+    PoseEstimator estimator(kPart, kSolver, small_options(method_default(), 0));
+    estimator.update(observe_at(0), {});
+    Pose broken;
+    broken.translation.x() = std::nan("");
+    UpdateResult result;
+    EXPECT_NO_THROW(result = estimator.update(observe_at(0), broken));
+    EXPECT_LT(error_m(result, 0), 0.001);
+    EXPECT_THROW(estimator.reset(broken, {}), std::invalid_argument);
+}
+
 TEST(Estimator, ResetForgets) {
     PoseEstimator estimator(kPart, kSolver, small_options(method_default(), 0));
     estimator.update(observe_at(0), {});
