@@ -5,6 +5,6 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 preset=${1:-dev}
 shift || true
 bash third_party_notes/install_packages.sh build test
-cmake --preset "$preset" >/dev/null
+cmake --preset "$preset" -DNEARPOSE_TESTS=ON >/dev/null  # the demo turns them off
 cmake --build --preset "$preset"
 ctest --test-dir "build/$preset" --output-on-failure --no-tests=error "$@"

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <thread>
 
 #include "tests/core/analytic_part.hpp"
 
@@ -85,6 +86,24 @@ TEST(Estimator, TheSameBitsForAnyNumberOfThreads) {
         EXPECT_EQ(runs[0], runs[1]);
         EXPECT_EQ(runs[0], runs[2]);
     }
+}
+
+TEST(Estimator, TwoEstimatorsAtOnceGiveTheBitsOfTwoInTurn) {
+    const auto run = [](std::uint64_t seed) {
+        EstimatorOptions options = small_options(method_default(), 1);
+        options.seed = seed;
+        PoseEstimator estimator(kPart, kSolver, options);
+        for (int frame = 0; frame < 2; ++frame) estimator.update(observe_at(frame), {});
+        std::vector<double> numbers;
+        for (const Pose& pose : estimator.particles().poses) numbers.push_back(pose.translation.x());
+        return numbers;
+    };
+    std::vector<double> first, second;
+    std::thread a([&] { first = run(1); }), b([&] { second = run(2); });
+    a.join();
+    b.join();
+    EXPECT_EQ(first, run(1));
+    EXPECT_EQ(second, run(2));
 }
 
 TEST(Estimator, AnotherSeedIsAnotherRun) {
