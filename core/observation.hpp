@@ -53,7 +53,8 @@ class Observation {
 
     // The measured point of a pixel that has depth [m].
     Eigen::Vector3d point_at(int pixel) const {
-        return static_cast<double>(depth_m_[pixel]) * camera_.ray(pixel % camera_.width, pixel / camera_.width);
+        const int u = pixel % camera_.width, v = pixel / camera_.width;
+        return static_cast<double>(depth_m_[pixel]) * camera_.ray(u, v);
     }
     // Unit normal of the surface around a pixel, towards the camera, from its neighbours at `reach` pixels; zero where
     // they have no depth or lie across a depth edge.
