@@ -11,7 +11,7 @@ mv "$work/first" "$work/prefix"
 mkdir "$work/build"
 awk '/^```cpp$/ { copying = 1; next } /^```$/ { copying = 0 } copying' "$root/README.md" >"$work/build/readme_example.inc"
 grep -q nearpose "$work/build/readme_example.inc" || { echo "README.md has no C++ example" >&2; exit 1; }
-cmake -S "$root/tests/consumer/project" -B "$work/build" -DCMAKE_PREFIX_PATH="$work/prefix" -DCMAKE_BUILD_TYPE=Release >/dev/null
+cmake -G Ninja -S "$root/tests/consumer/project" -B "$work/build" -DCMAKE_PREFIX_PATH="$work/prefix" -DCMAKE_BUILD_TYPE=Release >/dev/null
 cmake --build "$work/build"
 "$work/build/consumer" "$root/apps/models/engine_block.ply"
 "$work/prefix/bin/nearpose" --version
