@@ -23,7 +23,9 @@ class Approach : public testing::Test {
     std::filesystem::path folder_;
 
     std::filesystem::path simulate(std::uint64_t seed, int frames) {
-        folder_ = std::filesystem::path(testing::TempDir()) / ("nearpose_approach_" + std::to_string(seed));
+        // A folder of its own for each test: they may run side by side.
+        const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+        folder_ = std::filesystem::path(testing::TempDir()) / ("nearpose_" + name + "_" + std::to_string(seed));
         simulate::SimulationOptions options;
         options.data_set = folder_;
         options.replace = true;
