@@ -16,6 +16,9 @@ enum class Scenario {
     kPiston,    // the camera comes down to a bore in the part's upper face, as for an insertion
 };
 
+// What scenarios may be told beside their seed.
+struct ScenarioOptions {};
+
 // "baseline", "piston"; throws std::invalid_argument that lists them otherwise.
 Scenario scenario_of(const std::string& name);
 const std::vector<std::string>& scenario_names();

@@ -1,0 +1,78 @@
+// What is known of one frame of a run once the truth is known.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/data_set/bop_models.hpp"
+#include "core/pose.hpp"
+#include "raycast/mesh.hpp"
+
+namespace nearpose::evaluation {
+
+// The model as error measures see it.
+struct ModelShape {
+    data_set::ModelInfo info;
+    std::vector<Eigen::Vector3d> vertices_in_object_m;  // of models_eval
+};
+ModelShape shape_of(const data_set::ModelInfo& info, const Mesh& mesh);
+
+// What the image tells of how much of the part is to be seen.
+struct Visibility {
+    double distance_m = 0.0;         // of the mean of the visible points from the camera (the paper's distance)
+    double visible_volume_m3 = 0.0;  // of the ellipsoid of the visible points' principal axes (the paper's volume)
+    std::optional<double> visible_fraction;  // of the silhouette on the enlarged canvas, in 0..1
+};
+// From the measured points on the part [m], camera frame.
+Visibility visibility_of(const std::vector<Eigen::Vector3f>& visible_points_in_camera);
+
+struct TrueFrame {
+    int frame_id = 0;
+    Pose camera_from_object;
+    std::optional<Visibility> visibility;
+};
+
+struct EstimatedFrame {
+    Pose camera_from_object;
+    double score = 0.0;
+    double time_s = 0.0;                 // for the whole frame; < 0: not known
+    bool predicted = false;              // the object was not seen; the pose is a prediction
+    std::optional<Matrix6d> covariance;  // of camera_from_object * exp(twist), rotation first
+};
+
+// Errors of one pose. Of the poses in which a symmetric part looks the same, the one counts that is nearest.
+struct PoseErrors {
+    Eigen::Vector3d translation_in_camera_m = Eigen::Vector3d::Zero();  // estimate - truth, of the centre of the box
+    Eigen::Vector3d rotation_in_camera_rad = Eigen::Vector3d::Zero();   // rotation vector of estimate * truth^-1
+    double translation_m = 0.0;                                         // norms of both
+    double rotation_rad = 0.0;
+    double add_m = 0.0;    // mean distance of the model's vertices
+    double add_s_m = 0.0;  // mean distance from each vertex in the true pose to the nearest in the estimated one
+    double mssd_m = 0.0;   // maximum symmetry-aware surface distance
+    double mspd_px = 0.0;  // maximum symmetry-aware projection distance
+    // Squared Mahalanobis distance of the truth from the estimate under its covariance (6 degrees of freedom).
+    std::optional<double> mahalanobis_squared;
+};
+
+struct FrameErrors {
+    int frame_id = 0;
+    std::optional<Visibility> visibility;
+    std::optional<PoseErrors> errors;  // none: no pose
+    double score = 0.0;
+    double time_s = -1.0;
+    bool predicted = false;
+};
+
+// `camera` is for MSPD alone.
+FrameErrors frame_errors(const TrueFrame& truth, const std::optional<EstimatedFrame>& estimate, const ModelShape& shape,
+                         const PinholeCamera& camera);
+
+// A CSV table, a row a frame, millimetres and degrees; what it does not know is left empty. Reading gives back what was
+// written to the digits that were written; throws std::runtime_error naming file, line and column.
+std::string table_of(const std::vector<FrameErrors>& frames);
+std::vector<FrameErrors> read_table(const std::filesystem::path& csv);
+
+}  // namespace nearpose::evaluation

@@ -1,0 +1,64 @@
+// Many frames, few numbers.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/evaluation/frame_errors.hpp"
+
+namespace nearpose::evaluation {
+
+struct Statistics {
+    std::size_t count = 0;
+    double mean = 0.0, standard_deviation = 0.0, median = 0.0, percentile_95 = 0.0, max = 0.0;
+};
+// All 0 for no values. Percentiles interpolate between the values of neighbouring ranks.
+Statistics statistics_of(std::vector<double> values);
+
+struct ErrorLimit {
+    double translation_m = 0.010;
+    double rotation_rad = 0.0872664625997164788;  // 5 degrees
+};
+
+// First within a limit, and from when on for good.
+struct Arrival {
+    std::optional<int> first_index;  // into the frames; nothing: never
+    std::optional<int> holds_from;   // nothing: the last frame is not within it
+    bool stays() const { return first_index && holds_from && *first_index == *holds_from; }
+};
+Arrival arrival_of(const std::vector<FrameErrors>& frames, const ErrorLimit& limit);
+
+struct SummaryOptions {
+    int burn_in = 15;                               // frames at the beginning that the error statistics leave out
+    ErrorLimit coarse;                              // 10 mm, 5 degrees
+    ErrorLimit fine{0.002, 0.0174532925199432958};  // 2 mm, 1 degree
+};
+
+// Of one run. Errors are of the frames with a pose after the burn-in.
+struct RunSummary {
+    int frames = 0, frames_without_pose = 0, frames_predicted = 0;
+    int frames_lost = 0;  // after the first arrival: not within the coarse limit
+    Statistics translation_mm, rotation_deg;
+    Statistics translation_axis_mm[3], rotation_axis_deg[3];  // absolute values along the camera's x, y, z
+    Statistics add_mm, add_s_mm, mssd_mm, mspd_px;
+    double add_auc = 0.0,
+           add_s_auc = 0.0;  // area under the recall curve of 0..100 mm, in 0..1, all frames after burn-in
+    double add_auc_diameter = 0.0, add_s_auc_diameter = 0.0;  // of 0..0.1 diameters
+    Arrival coarse, fine;
+    // Share of the frames with a covariance in which the truth lies inside its 90 % region; nothing: none has one.
+    std::optional<double> inside_90;
+    Statistics time_ms;
+};
+RunSummary summarise(const std::vector<FrameErrors>& frames, double model_diameter_m, const SummaryOptions& options);
+
+// An estimate with its 95 % confidence interval.
+struct Interval {
+    double value = 0.0, low = 0.0, high = 0.0;
+};
+// Wilson's interval of `successes` out of `trials` (at least one).
+Interval proportion(int successes, int trials);
+// Mean over independent runs: percentile bootstrap of 2000 resamples of the runs, from a fixed seed.
+Interval mean_over_runs(const std::vector<double>& value_of_run);
+
+}  // namespace nearpose::evaluation

@@ -1,0 +1,75 @@
+// A simulated recording in memory: what a depth camera on an arm would deliver, frame by frame, with its truth. Written
+// to disk by simulate.hpp, tracked on the spot by experiments.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "apps/data_set/bop_writer.hpp"
+#include "apps/simulate/arm.hpp"
+#include "apps/simulate/mask_errors.hpp"
+#include "apps/simulate/scenario.hpp"
+#include "apps/simulate/sensor_noise.hpp"
+#include "core/camera.hpp"
+#include "core/depth_image.hpp"
+#include "core/pose.hpp"
+#include "raycast/mesh.hpp"
+
+namespace nearpose::simulate {
+
+// 640 x 480 at a field of view of 56 x 44 degrees.
+PinholeCamera default_camera();
+
+struct RecordingOptions {
+    Scenario scenario = Scenario::kPiston;
+    ScenarioOptions path;
+    int num_frames = 0;  // 0: as many as the scenario has by itself
+    double frames_per_second = 30.0;
+    std::uint64_t seed = 1;
+    PinholeCamera camera = default_camera();
+    double depth_scale_mm = 0.1;  // millimetres per count: depth is rounded to it
+    SensorNoise sensor;           // already scaled
+    ArmErrors arm;
+    MaskErrors mask;                // of given_mask
+    double dropped_fraction = 0.0;  // of the frames, never the first
+    bool with_table = true;
+};
+
+// Throws std::invalid_argument naming field, value and bound.
+void validate(const RecordingOptions& options);
+
+struct SimulatedFrame {
+    int id = 0;  // place on the path; dropped frames leave gaps
+    double stamp_s = 0.0;
+    DepthImage depth;  // measured, in whole counts of the depth scale
+    Mask visible;      // exact: pixels that show the part
+    Mask silhouette;   // exact: pixels whose ray meets the part, also behind others
+    Mask given_mask;   // `visible` with the mask's errors: what an estimator is given
+    Pose camera_from_object;
+    Pose camera_from_world;  // as the arm reports it, with its errors
+    data_set::ObjectTruth truth;
+};
+
+// Draws the path, the sensor and the arm when it is constructed. Immutable; frame may be called from several threads at
+// once, and the same options give the same bits whatever was asked before.
+class Recording {
+  public:
+    Recording(const Mesh& mesh, const Part& part, const RecordingOptions& options);
+    ~Recording();
+    Recording(Recording&&) noexcept;
+
+    int num_frames() const;  // without the dropped ones
+    SimulatedFrame frame(int index) const;
+
+    const RecordingOptions& options() const;
+    const ModelExtent& extent() const;  // of the part
+
+  private:
+    struct Impl;
+    std::unique_ptr<const Impl> impl_;
+};
+
+}  // namespace nearpose::simulate

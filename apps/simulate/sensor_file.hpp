@@ -1,0 +1,26 @@
+// Depth sensors as data: JSON files in apps/sensors, built into the program under their names.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/simulate/sensor_noise.hpp"
+#include "core/camera.hpp"
+
+namespace nearpose::simulate {
+
+struct SensorDescription {
+    std::string name;
+    PinholeCamera camera;
+    double depth_scale_mm = 1.0;  // millimetres per count
+    SensorNoise noise;
+};
+
+// The names of those that are built in.
+const std::vector<std::string>& sensor_names();
+
+// One of these names, or else the path of a JSON file. Throws std::runtime_error naming file, key, value and bound, and
+// for neither a name nor a file, listing the names.
+SensorDescription read_sensor(const std::string& name_or_path);
+
+}  // namespace nearpose::simulate
