@@ -55,13 +55,13 @@ Correspondences associate_nearest(const View& view, const Pose& camera_from_obje
     const Eigen::Vector3f translation = camera_from_object.translation.cast<float>();
     std::vector<Eigen::Vector3f> queries(view.size());
     for (std::size_t k = 0; k < view.size(); ++k) queries[k] = rotation * view.points_in_object[k] + translation;
-    const std::vector<PointIndex::Neighbour> neighbours = observation.index().nearest(queries);
-    const auto limit_m2 = static_cast<float>(max_distance_m * max_distance_m);
+    const std::vector<PointIndex::Neighbour> neighbours =
+        observation.index().nearest(queries, static_cast<float>(max_distance_m));
     Correspondences pairs;
     reserve(pairs, view.size());
     for (std::size_t k = 0; k < view.size(); ++k) {
-        const auto [index, squared_distance_m2] = neighbours[k];
-        if (index < 0 || squared_distance_m2 > limit_m2) continue;
+        const int index = neighbours[k].index;
+        if (index < 0) continue;
         const Eigen::Vector3f& measured = observation.points_in_camera()[index];
         append(pairs, view, k, measured, observation.sensor().sigma_m(measured.z()));
         pairs.normals_in_camera.push_back(observation.normals_in_camera()[index]);

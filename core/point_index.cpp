@@ -4,6 +4,31 @@
 #include <stdexcept>
 
 namespace nearpose {
+namespace {
+
+// The one nearest point so far. It begins with the limit, so that branches beyond it are never entered.
+class Nearest : public flann::ResultSet<float> {
+  public:
+    explicit Nearest(float limit_m2) : limit_m2_(limit_m2) {}
+
+    bool full() const override { return true; }
+    void addPoint(float squared_distance_m2, std::size_t index) override {
+        if (!(squared_distance_m2 < limit_m2_)) return;
+        limit_m2_ = squared_distance_m2;
+        index_ = static_cast<int>(index);
+    }
+    float worstDist() const override { return limit_m2_; }
+
+    PointIndex::Neighbour found() const {
+        return index_ < 0 ? PointIndex::Neighbour{} : PointIndex::Neighbour{index_, limit_m2_};
+    }
+
+  private:
+    float limit_m2_;
+    int index_ = -1;
+};
+
+}  // namespace
 
 struct PointIndex::Tree {
     using Index = flann::KDTreeSingleIndex<flann::L2_3D<float>>;
@@ -36,30 +61,20 @@ PointIndex::~PointIndex() = default;
 PointIndex::PointIndex(PointIndex&&) noexcept = default;
 PointIndex& PointIndex::operator=(PointIndex&&) noexcept = default;
 
-std::vector<PointIndex::Neighbour> PointIndex::nearest(const std::vector<Eigen::Vector3f>& queries) const {
+std::vector<PointIndex::Neighbour> PointIndex::nearest(const std::vector<Eigen::Vector3f>& queries,
+                                                       float max_distance_m) const {
     std::vector<Neighbour> found(queries.size());
-    if (!tree_->index || queries.empty()) return found;
-    // Queries that are not finite are never sent: the library leaves rubbish in their place.
-    std::vector<float> rows;
-    std::vector<int> query_of_row;
-    rows.reserve(3 * queries.size());
-    query_of_row.reserve(queries.size());
+    if (!tree_->index) return found;
+    const float limit_m2 = max_distance_m * max_distance_m;
+    const flann::SearchParams exact(flann::FLANN_CHECKS_UNLIMITED, 0.0F, false);
     for (std::size_t q = 0; q < queries.size(); ++q) {
+        // Queries that are not finite are never sent: the library leaves rubbish in their place.
         if (!queries[q].allFinite()) continue;
         const Eigen::Vector3f relative = queries[q] - tree_->mean;
-        rows.insert(rows.end(), relative.data(), relative.data() + 3);
-        query_of_row.push_back(static_cast<int>(q));
+        Nearest nearest(limit_m2);
+        tree_->index->findNeighbors(nearest, relative.data(), exact);
+        found[q] = nearest.found();
     }
-    if (query_of_row.empty()) return found;
-    std::vector<int> ids(query_of_row.size(), -1);
-    std::vector<float> distances(query_of_row.size(), 0.0F);
-    const flann::Matrix<float> query_rows(rows.data(), query_of_row.size(), 3);
-    flann::Matrix<int> id_rows(ids.data(), ids.size(), 1);
-    flann::Matrix<float> distance_rows(distances.data(), distances.size(), 1);
-    flann::SearchParams exact_and_serial(flann::FLANN_CHECKS_UNLIMITED, 0.0F, false);
-    exact_and_serial.cores = 1;  // the loop over particles is the parallel one
-    tree_->index->knnSearch(query_rows, id_rows, distance_rows, 1, exact_and_serial);
-    for (std::size_t r = 0; r < ids.size(); ++r) found[query_of_row[r]] = {ids[r], distances[r]};
     return found;
 }
 

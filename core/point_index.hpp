@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -11,7 +12,7 @@ namespace nearpose {
 class PointIndex {
   public:
     struct Neighbour {
-        int index = -1;  // into the cloud; -1 where the cloud is empty or the query not finite
+        int index = -1;  // into the cloud; -1 where nothing is near or the query is not finite
         float squared_distance_m2 = 0.0F;
     };
 
@@ -21,9 +22,10 @@ class PointIndex {
     PointIndex(PointIndex&&) noexcept;
     PointIndex& operator=(PointIndex&&) noexcept;
 
-    // The nearest point of the cloud to each query, in the queries' order. One call for many queries is several times
-    // faster than many calls.
-    std::vector<Neighbour> nearest(const std::vector<Eigen::Vector3f>& queries) const;
+    // The nearest point of the cloud to each query, in the queries' order; none (index -1) where none is nearer than
+    // `max_distance_m`. A limit spares most of the search for queries that lie far from the cloud.
+    std::vector<Neighbour> nearest(const std::vector<Eigen::Vector3f>& queries,
+                                   float max_distance_m = std::numeric_limits<float>::infinity()) const;
 
   private:
     struct Tree;

@@ -40,6 +40,21 @@ TEST(PointIndex, EqualsBruteForce) {
     }
 }
 
+TEST(PointIndex, FindsTheSameWithinALimitAndNothingBeyondIt) {
+    const PointIndex index(random_points(500, 5, 0.0F));
+    const std::vector<Eigen::Vector3f> queries = random_points(400, 6, 0.0F);
+    constexpr float kLimit_m = 0.06F;
+    const auto all = index.nearest(queries), near = index.nearest(queries, kLimit_m);
+    int beyond = 0;
+    for (std::size_t q = 0; q < queries.size(); ++q) {
+        const bool within = all[q].squared_distance_m2 < kLimit_m * kLimit_m;
+        beyond += within ? 0 : 1;
+        EXPECT_EQ(near[q].index, within ? all[q].index : -1);
+    }
+    EXPECT_GT(beyond, 50);
+    EXPECT_LT(beyond, 350);
+}
+
 TEST(PointIndex, FarFromTheOriginNoDigitsAreLostBeyondTheFloatsOwn) {
     const auto points = random_points(500, 1, 1000.0F);
     const auto found = PointIndex(points).nearest(points);
