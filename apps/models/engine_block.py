@@ -617,9 +617,8 @@ def build_bodies():
 # ------------------------------------------------------------------------------------------------
 
 
-def build_mesh():
+def mesh_of(bodies):
     """Vertices (mm) and triangles; vertices are welded within a solid, never across solids."""
-    bodies = build_bodies()
     points = [p for b in bodies for t in b.tris for p in t]
     centre = [(min(p[k] for p in points) + max(p[k] for p in points)) / 2 for k in range(3)]
     verts, tris = [], []
@@ -638,12 +637,12 @@ def build_mesh():
     return verts, tris
 
 
-def encode_ply(verts, tris):
+def encode_ply(verts, tris, title='inline-four engine block'):
     header = ('ply\nformat binary_little_endian 1.0\n'
-              'comment inline-four engine block, millimetres\n'
+              'comment %s, millimetres\n'
               'element vertex %d\nproperty float x\nproperty float y\nproperty float z\n'
               'element face %d\nproperty list uchar int vertex_indices\nend_header\n'
-              % (len(verts), len(tris)))
+              % (title, len(verts), len(tris)))
     return (header.encode('ascii') + b''.join(struct.pack('<3f', *v) for v in verts)
             + b''.join(struct.pack('<B3i', 3, *t) for t in tris))
 
@@ -809,23 +808,17 @@ def turned(verts, axis):
     return [tuple(c if k == axis else -c for k, c in enumerate(v)) for v in verts]
 
 
-def check(data, reference):
-    failures = []
-
-    def report(ok, text):
-        print('%s  %s' % ('ok  ' if ok else 'FAIL', text))
-        if not ok:
-            failures.append(text)
-
+def check_solids(report, data, reference, num_bodies, num_tris, expected_size):
+    """What holds for every part: `num_tris` is (least, most), `expected_size` in mm."""
     verts, tris = decode_ply(data)
     report(data == reference, 'bytes equal a fresh generation (%d bytes)' % len(data))
     report(len(data) < 300000, 'file below 300 kB')
-    report(6000 <= len(tris) <= 12000, '%d triangles, %d vertices' % (len(tris), len(verts)))
+    report(num_tris[0] <= len(tris) <= num_tris[1], '%d triangles, %d vertices' % (len(tris), len(verts)))
     lo = [min(v[k] for v in verts) for k in range(3)]
     hi = [max(v[k] for v in verts) for k in range(3)]
     size = [h - l for l, h in zip(lo, hi)]
     report(all(abs(h + l) < 2e-3 for l, h in zip(lo, hi)), 'bounding box centred on the origin')
-    report(all(abs(s - e) < 16 for s, e in zip(size, (360, 170, 240))),
+    report(all(abs(s - e) < 16 for s, e in zip(size, expected_size)),
            'size %.1f x %.1f x %.1f mm' % tuple(size))
     areas = []
     for t in tris:
@@ -845,11 +838,22 @@ def check(data, reference):
         open_edges += sum(1 for (a, b), n in edges.items() if n != 1 or edges.get((b, a)) != 1)
         volumes.append(sum(dot(verts[a], cross(verts[b], verts[c])) for a, b, c in group) / 6)
     report(open_edges == 0, '%d solids, each edge between two opposite triangles' % len(solids))
-    report(len(solids) == len(build_bodies()), 'solids do not touch in a vertex')
+    report(len(solids) == num_bodies, 'solids do not touch in a vertex')
     report(min(volumes) > 0, 'all solids wound outward (smallest %.0f mm^3)' % min(volumes))
     n = coplanar_pairs(verts, solids)
     report(n == 0, '%d coincident faces between solids' % n)
+    return verts, tris
 
+
+def check(data, reference):
+    failures = []
+
+    def report(ok, text):
+        print('%s  %s' % ('ok  ' if ok else 'FAIL', text))
+        if not ok:
+            failures.append(text)
+
+    verts, tris = check_solids(report, data, reference, len(build_bodies()), (6000, 12000), (360, 170, 240))
     views = (('+z', 2, 1), ('-z', 2, -1), ('+y', 1, 1), ('-y', 1, -1), ('+x', 0, 1), ('-x', 0, -1))
     for name, axis, sign in views:
         base, backs = depth_map(verts, tris, axis, sign)
@@ -877,14 +881,14 @@ def check(data, reference):
 
 def main(args):
     if args and args[0] == '--check' and len(args) <= 2:
-        reference = encode_ply(*build_mesh())
+        reference = encode_ply(*mesh_of(build_bodies()))
         data = reference
         if len(args) == 2:
             with open(args[1], 'rb') as f:
                 data = f.read()
         return 0 if check(data, reference) else 1
     if len(args) == 1 and not args[0].startswith('-'):
-        write_file(args[0], encode_ply(*build_mesh()))
+        write_file(args[0], encode_ply(*mesh_of(build_bodies())))
         return 0
     print('usage: engine_block.py OUT.ply | --check [IN.ply]', file=sys.stderr)
     return 2

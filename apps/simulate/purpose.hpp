@@ -13,5 +13,7 @@ inline constexpr auto kPixelDraw = static_cast<RandomPurpose>(104);       // smo
 inline constexpr auto kPixelEventDraw = static_cast<RandomPurpose>(105);  // chance events at a frame's pixel
 inline constexpr auto kPatchDraw = static_cast<RandomPurpose>(107);       // nodes of a frame's drop-out patches
 inline constexpr auto kBiasDraw = static_cast<RandomPurpose>(106);        // nodes of the sensor's fixed error field
+inline constexpr auto kFrameBiasDraw = static_cast<RandomPurpose>(120);   // nodes of a frame's own error field
+inline constexpr auto kSpecularDraw = static_cast<RandomPurpose>(121);    // nodes of a frame's patches in highlights
 
 }  // namespace nearpose::simulate

@@ -90,6 +90,17 @@ bool dropped_for_grazing(const SensorNoise& noise, double incidence_cosine, doub
     return uniform_of(gaussian) < noise.grazing_drop_probability * t * t * (3.0 - 2.0 * t);
 }
 
+// Whether a mirror that touches the surface at `pixel` throws the light near the pixel's ray. The normal's sign does
+// not matter.
+bool in_highlight(const SensorNoise& noise, const ExactImage& exact, int pixel) {
+    const Eigen::Vector3d ray = exact.camera.ray(pixel % exact.camera.width, pixel / exact.camera.width);
+    const Eigen::Vector3d point = ray * static_cast<double>(exact.depth(pixel));
+    const Eigen::Vector3d to_light = (Eigen::Vector3d(noise.light_offset_m, 0.0, 0.0) - point).normalized();
+    const Eigen::Vector3d normal = exact.image.normals_in_camera[static_cast<std::size_t>(pixel)].cast<double>();
+    const Eigen::Vector3d mirrored = 2.0 * normal.dot(to_light) * normal - to_light;
+    return mirrored.dot(-ray.normalized()) >= std::cos(noise.specular_angle_rad);
+}
+
 // Depth in whole steps of disparity.
 double in_disparity_steps(double depth_m, double fx_times_baseline, double step_pixels) {
     if (fx_times_baseline == 0.0 || step_pixels == 0.0) return depth_m;
@@ -102,16 +113,25 @@ double in_disparity_steps(double depth_m, double fx_times_baseline, double step_
 void validate(const SensorNoise& noise) {
     check_option("sensor.sigma_floor_m", noise.sigma_floor_m, 0.0, 1.0);
     check_option("sensor.sigma_per_square_metre", noise.sigma_per_square_metre, 0.0, 1.0);
+    check_option("sensor.sigma_least_at_m", noise.sigma_least_at_m, 0.0, 10.0);
+    check_option("sensor.angle_factor", noise.angle_factor, 0.0, 10.0);
     check_option("sensor.correlation_pixels", noise.correlation_pixels, 0.0, 20.0);
     check_option("sensor.jitter_pixels", noise.jitter_pixels, 0.0, 100.0);
     check_option("sensor.bias_sigma_m", noise.bias_sigma_m, 0.0, 1.0);
     check_option("sensor.bias_length_pixels", noise.bias_length_pixels, 2.0, 1e4);
+    check_option("sensor.frame_bias_sigma_m", noise.frame_bias_sigma_m, 0.0, 1.0);
+    check_option("sensor.frame_bias_length_pixels", noise.frame_bias_length_pixels, 2.0, 1e4);
+    check_option("sensor.depth_scale_error", noise.depth_scale_error, -0.9, 10.0);
     check_option("sensor.baseline_m", noise.baseline_m, 0.0, 10.0);
     check_option("sensor.disparity_step_pixels", noise.disparity_step_pixels, 0.0, 10.0);
     check_option("sensor.grazing_begin_rad", noise.grazing_begin_rad, 0.0, M_PI / 2);
     check_option("sensor.grazing_end_rad", noise.grazing_end_rad, noise.grazing_begin_rad + 1e-6, M_PI / 2);
     check_option("sensor.grazing_drop_probability", noise.grazing_drop_probability, 0.0, 1.0);
     check_option("sensor.grazing_patch_pixels", noise.grazing_patch_pixels, 1.0, 1e4);
+    check_option("sensor.specular_angle_rad", noise.specular_angle_rad, 0.0, M_PI / 2);
+    check_option("sensor.specular_drop_probability", noise.specular_drop_probability, 0.0, 1.0);
+    check_option("sensor.specular_patch_pixels", noise.specular_patch_pixels, 1.0, 1e4);
+    check_option("sensor.light_offset_m", noise.light_offset_m, -10.0, 10.0);
     check_option("sensor.edge_jump_m", noise.edge_jump_m, 1e-6, 10.0);
     check_option("sensor.edge_radius_pixels", noise.edge_radius_pixels, 1, 20);
     check_option("sensor.edge_drop_probability", noise.edge_drop_probability, 0.0, 1.0);
@@ -123,11 +143,11 @@ void validate(const SensorNoise& noise) {
 SensorNoise scaled(SensorNoise noise, double scale) {
     check_option("noise scale", scale, 0.0, 100.0);
     for (double* size : {&noise.sigma_floor_m, &noise.sigma_per_square_metre, &noise.jitter_pixels, &noise.bias_sigma_m,
-                         &noise.disparity_step_pixels}) {
+                         &noise.frame_bias_sigma_m, &noise.depth_scale_error, &noise.disparity_step_pixels}) {
         *size *= scale;
     }
-    for (double* probability :
-         {&noise.grazing_drop_probability, &noise.edge_drop_probability, &noise.flying_probability}) {
+    for (double* probability : {&noise.grazing_drop_probability, &noise.specular_drop_probability,
+                                &noise.edge_drop_probability, &noise.flying_probability}) {
         *probability = std::min(1.0, *probability * scale);
     }
     if (scale == 0.0) noise.baseline_m = 0.0;
@@ -152,6 +172,15 @@ DepthImage DepthSensor::measure(const RenderedImage& exact_image, std::uint64_t 
         correlated_noise(camera_.width, camera_.height, noise_.correlation_pixels, seed_, frame, kPixelDraw);
     const std::vector<float> patches =
         smooth_field(camera_.width, camera_.height, noise_.grazing_patch_pixels, seed_, frame, kPatchDraw);
+    std::vector<float> highlights, frame_bias;
+    if (noise_.specular_drop_probability > 0.0) {
+        highlights =
+            smooth_field(camera_.width, camera_.height, noise_.specular_patch_pixels, seed_, frame, kSpecularDraw);
+    }
+    if (noise_.frame_bias_sigma_m > 0.0) {
+        frame_bias =
+            smooth_field(camera_.width, camera_.height, noise_.frame_bias_length_pixels, seed_, frame, kFrameBiasDraw);
+    }
     const std::vector<char> hidden = stereo_shadow(exact, noise_.baseline_m);
     DepthImage measured{camera_.width, camera_.height, std::vector<float>(exact_image.depth.depth_m.size(), 0.0F)};
     for (int pixel = 0; pixel < camera_.width * camera_.height; ++pixel) {
@@ -163,7 +192,12 @@ DepthImage DepthSensor::measure(const RenderedImage& exact_image, std::uint64_t 
         const int seen =
             camera_.pixel_at(std::clamp(u, 0.0, camera_.width - 1.0), std::clamp(v, 0.0, camera_.height - 1.0));
         if (exact.depth(seen) == 0.0F || hidden[static_cast<std::size_t>(seen)] != 0) continue;
-        if (dropped_for_grazing(noise_, exact.incidence_cosine(seen), patches[index])) continue;
+        const double incidence_cosine = exact.incidence_cosine(seen);
+        if (dropped_for_grazing(noise_, incidence_cosine, patches[index])) continue;
+        if (!highlights.empty() && in_highlight(noise_, exact, seen) &&
+            uniform_of(highlights[index]) < noise_.specular_drop_probability) {
+            continue;
+        }
         double depth_m = exact.plane_depth(seen, u, v);
         const float across_edge_m = depth_across_edge(exact, seen, noise_);
         if (across_edge_m >= 0.0F) {
@@ -172,7 +206,12 @@ DepthImage DepthSensor::measure(const RenderedImage& exact_image, std::uint64_t 
             const bool flies = chance.uniform() < noise_.flying_probability;
             if (flies && across_edge_m > 0.0F) depth_m += chance.uniform() * (across_edge_m - depth_m);
         }
-        depth_m += noise_.sigma_m(depth_m) * draw[0] + bias_m_[index];
+        const double sigma_m = noise_.angle_factor == 0.0
+                                   ? noise_.sigma_m(depth_m)
+                                   : noise_.sigma_m(depth_m, std::acos(std::min(1.0, incidence_cosine)));
+        depth_m *= 1.0 + noise_.depth_scale_error;
+        depth_m += sigma_m * draw[0] + bias_m_[index];
+        if (!frame_bias.empty()) depth_m += noise_.frame_bias_sigma_m * frame_bias[index];
         depth_m = in_disparity_steps(depth_m, camera_.fx * noise_.baseline_m, noise_.disparity_step_pixels);
         if (!(depth_m >= noise_.min_range_m && depth_m <= noise_.max_range_m)) continue;
         measured.depth_m[index] = static_cast<float>(depth_m);

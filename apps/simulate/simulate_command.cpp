@@ -7,7 +7,7 @@
 #include "apps/console.hpp"
 #include "apps/data_set/camera_json.hpp"
 #include "apps/model_input.hpp"
-#include "apps/simulate/embedded_model.hpp"
+#include "apps/simulate/parts.hpp"
 #include "apps/simulate/simulate.hpp"
 
 namespace nearpose::program {
@@ -64,7 +64,7 @@ int simulate_recording(const CommandOptions& command, const SharedOptions& share
     const bool embedded = command.model.model.empty();
     if (embedded && !command.model.unit.empty())
         throw BadUse("--unit belongs to --model: the built-in part needs none");
-    const Mesh mesh = embedded ? simulate::embedded_engine_block() : load_model(command.model, shared);
+    const Mesh mesh = embedded ? simulate::embedded_part("engine_block").mesh : load_model(command.model, shared);
     const ModelExtent extent = extent_of(mesh);
     const simulate::Part part = embedded ? simulate::engine_block_part(extent) : simulate::box_part(extent);
 

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "apps/simulate/embedded_model.hpp"
+#include "apps/simulate/parts.hpp"
 #include "apps/simulate/simulate.hpp"
 #include "tests/integration/run_scene.hpp"
 
@@ -31,7 +31,7 @@ class Approach : public testing::Test {
         options.replace = true;
         options.num_frames = frames;
         options.seed = seed;
-        const Mesh mesh = simulate::embedded_engine_block();
+        const Mesh mesh = simulate::embedded_part("engine_block").mesh;
         simulate::write_data_set(mesh, simulate::engine_block_part(extent_of(mesh)), options, [] { return true; });
         return folder_ / "test/000001";
     }

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "apps/simulate/embedded_model.hpp"
+#include "apps/simulate/parts.hpp"
 #include "raycast/depth_renderer.hpp"
 #include "raycast/mesh.hpp"
 
@@ -14,7 +14,7 @@ namespace {
 const PinholeCamera kCamera{160, 120, 150.0, 150.0, 79.5, 59.5};
 
 Part block() {
-    static const ModelExtent extent = extent_of(embedded_engine_block());
+    static const ModelExtent extent = extent_of(embedded_part("engine_block").mesh);
     return engine_block_part(extent);
 }
 
@@ -40,7 +40,7 @@ TEST(EmbeddedModel, IsTheReferenceOfTheScenarios) {
 
 TEST(EmbeddedModel, HasItsDeckAndBoresWhereThePartSays) {
     const Part part = block();
-    const EmbreeScene scene(embedded_engine_block());
+    const EmbreeScene scene(embedded_part("engine_block").mesh);
     const PinholeCamera one_ray{1, 1, 1.0, 1.0, 0.0, 0.0};
     const auto surface_z = [&](const Eigen::Vector3d& point) {
         Pose object_from_camera;
@@ -66,7 +66,7 @@ TEST(Baseline, StandsStillAndHasTheWholePartInView) {
         EXPECT_GE(centre.norm(), kBaselineDistance * part.extent.diameter_m() - 1e-9);
         EXPECT_LE(centre.norm(), 1.35 * part.extent.diameter_m());
         EXPECT_GT(path[0].inverse().translation.z(), part.extent.box_max_in_object.z() - 0.12);
-        for (const Eigen::Vector3f& vertex : embedded_engine_block().vertices_in_object) {
+        for (const Eigen::Vector3f& vertex : embedded_part("engine_block").mesh.vertices_in_object) {
             const Eigen::Vector3d point = path[0] * vertex.cast<double>().eval();
             ASSERT_GT(point.z(), 0.0);
             ASSERT_GE(kCamera.pixel_at(kCamera.project(point).x(), kCamera.project(point).y()), 0);

@@ -17,7 +17,7 @@
 #include "apps/data_set/json_file.hpp"
 #include "apps/data_set/png_file.hpp"
 #include "apps/data_set/trajectory_tum.hpp"
-#include "apps/simulate/embedded_model.hpp"
+#include "apps/simulate/parts.hpp"
 #include "raycast/depth_renderer.hpp"
 #include "raycast/mesh_loader.hpp"
 
@@ -46,7 +46,7 @@ SimulationOptions small_options(const fs::path& out) {
 }
 
 SimulationSummary simulate_block(const SimulationOptions& options) {
-    const Mesh mesh = embedded_engine_block();
+    const Mesh mesh = embedded_part("engine_block").mesh;
     return write_data_set(mesh, engine_block_part(extent_of(mesh)), options, kGoOn);
 }
 
@@ -107,7 +107,7 @@ TEST(Simulate, WrittenFilesReadBackAndAgree) {
         const data_set::ModelInfo info = data_set::read_model_info(folder / "set" / name, 1);
         EXPECT_NEAR(info.diameter_m, 0.45585, 1e-4);
         const Mesh mesh = load_mesh(data_set::model_path(folder / "set" / name, 1), LengthUnit::kMillimetre).mesh;
-        EXPECT_EQ(mesh.triangles.size(), embedded_engine_block().triangles.size());
+        EXPECT_EQ(mesh.triangles.size(), embedded_part("engine_block").mesh.triangles.size());
     }
     const auto targets = data_set::JsonFile(folder / "set/test_targets_bop19.json");
     EXPECT_EQ(targets.root().elements().size(), 5u);
@@ -123,7 +123,7 @@ TEST(Simulate, WithoutNoiseTheTruthRendersToTheDepthAndTheMasks) {
     const data_set::BopScene scene = data_set::open_scene(folder / "set/test/000001");
     const std::map<int, Pose> truth = data_set::read_ground_truth(scene.folder, 1);
     const data_set::JsonFile info(scene.folder / "scene_gt_info.json");
-    const EmbreeScene block(embedded_engine_block());
+    const EmbreeScene block(embedded_part("engine_block").mesh);
     for (const data_set::Frame& frame : scene.frames) {
         const DepthImage depth = data_set::load_depth(frame),
                          exact = render_depth(block, truth.at(frame.id), frame.camera);
@@ -169,7 +169,7 @@ TEST(Simulate, ResidualsSpreadAsTheSensorSays) {
     simulate_block(options);
     const data_set::BopScene scene = data_set::open_scene(folder / "set/test/000001");
     const std::map<int, Pose> truth = data_set::read_ground_truth(scene.folder, 1);
-    const EmbreeScene block(embedded_engine_block());
+    const EmbreeScene block(embedded_part("engine_block").mesh);
     std::vector<double> normalised;
     for (const data_set::Frame& frame : scene.frames) {
         const DepthImage depth = data_set::load_depth(frame),
@@ -243,7 +243,7 @@ TEST(Simulate, ReplacesOnlyWhatItIsToldTo) {
 
 TEST(Simulate, LeavesNothingBehindWhenStopped) {
     const fs::path folder = fresh_folder("stopped");
-    const Mesh mesh = embedded_engine_block();
+    const Mesh mesh = embedded_part("engine_block").mesh;
     int calls = 0;
     const SimulationSummary summary = write_data_set(mesh, engine_block_part(extent_of(mesh)),
                                                      small_options(folder / "set"), [&] { return ++calls < 2; });
