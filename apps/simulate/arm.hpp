@@ -16,13 +16,17 @@ struct ArmErrors {
     // Of the calibration between hand and camera: the same in all frames, of this size in a drawn direction.
     double hand_eye_translation_m = 0.0;
     double hand_eye_rotation_rad = 0.0;
+    // The pose that is reported with a frame is the camera's so long after the frame's stamp (negative: before).
+    double time_offset_s = 0.0;
 };
 
 // Throws std::invalid_argument naming field, value and bound.
 void validate(const ArmErrors& errors);
 
-// camera_from_world of every frame. The object stands still at a drawn pose in the world.
-std::vector<Pose> measured_motion(const std::vector<Pose>& camera_from_object, const ArmErrors& errors,
-                                  std::uint64_t seed);
+// camera_from_world of every frame, one every 1 / frames_per_second. The scene stands still at a drawn pose in the
+// world. A hand-eye error X acts on the camera's side: X * camera_from_world, so that a reported motion is X * motion *
+// X^-1.
+std::vector<Pose> measured_motion(const std::vector<Pose>& camera_from_scene, const ArmErrors& errors,
+                                  std::uint64_t seed, double frames_per_second = 30.0);
 
 }  // namespace nearpose::simulate

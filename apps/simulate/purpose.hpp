@@ -15,5 +15,8 @@ inline constexpr auto kPatchDraw = static_cast<RandomPurpose>(107);       // nod
 inline constexpr auto kBiasDraw = static_cast<RandomPurpose>(106);        // nodes of the sensor's fixed error field
 inline constexpr auto kFrameBiasDraw = static_cast<RandomPurpose>(120);   // nodes of a frame's own error field
 inline constexpr auto kSpecularDraw = static_cast<RandomPurpose>(121);    // nodes of a frame's patches in highlights
+inline constexpr auto kTaskDraw = static_cast<RandomPurpose>(130);        // the part's motion and how it lies
+inline constexpr auto kThingsDraw = static_cast<RandomPurpose>(131);      // what stands around the part
+inline constexpr auto kDropDraw = static_cast<RandomPurpose>(132);        // which frames are dropped
 
 }  // namespace nearpose::simulate

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "apps/data_set/bop_writer.hpp"
@@ -36,10 +36,23 @@ struct RecordingOptions {
     MaskErrors mask;                // of given_mask
     double dropped_fraction = 0.0;  // of the frames, never the first
     bool with_table = true;
+    // One of part_names(): its object number goes into the truth, and other built-in parts of the scene are told too.
+    // Empty: a part of the user's own, object 1.
+    std::string part_name;
 };
 
 // Throws std::invalid_argument naming field, value and bound.
 void validate(const RecordingOptions& options);
+
+// Of the frames, by dropped_fraction.
+int num_dropped(const RecordingOptions& options);
+
+// Another part in the image that the truth speaks of: a copy, or another built-in part.
+struct OtherInstance {
+    Mask visible;     // exact
+    Mask silhouette;  // exact
+    data_set::ObjectTruth truth;
+};
 
 struct SimulatedFrame {
     int id = 0;  // place on the path; dropped frames leave gaps
@@ -51,6 +64,7 @@ struct SimulatedFrame {
     Pose camera_from_object;
     Pose camera_from_world;  // as the arm reports it, with its errors
     data_set::ObjectTruth truth;
+    std::vector<OtherInstance> others;
 };
 
 // Draws the path, the sensor and the arm when it is constructed. Immutable; frame may be called from several threads at

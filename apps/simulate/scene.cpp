@@ -8,20 +8,6 @@ namespace {
 
 constexpr int kMaxCanvasSide = 16384;  // of any camera [pixels]
 
-Mesh table_under(const ModelExtent& part) {
-    // Far enough for a whole view of the part to show the table around it.
-    const double half_m = 1.5 * part.diameter_m();
-    const Eigen::Vector3d centre = part.centre_in_object();
-    Mesh table;
-    for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
-        table.vertices_in_object.emplace_back(
-            Eigen::Vector3d(centre.x() + x * half_m, centre.y() + y * half_m, part.box_min_in_object.z())
-                .cast<float>());
-    }
-    table.triangles = {{0, 1, 2}, {0, 2, 3}};
-    return table;
-}
-
 PixelBox widened(PixelBox box, const Eigen::Vector2d& pixel) {
     // Silhouettes are told by pixel centres, which lie at integers.
     box.first_u = std::min(box.first_u, static_cast<int>(std::floor(pixel.x())));
@@ -31,16 +17,18 @@ PixelBox widened(PixelBox box, const Eigen::Vector2d& pixel) {
     return box;
 }
 
-// A rendered frame of nothing.
-RenderedFrame empty_frame(const PinholeCamera& camera) {
+RenderedImage empty_image(const PinholeCamera& camera) {
     const std::size_t num_pixels = static_cast<std::size_t>(camera.width) * camera.height;
-    RenderedFrame frame;
-    frame.image.depth = {camera.width, camera.height, std::vector<float>(num_pixels, 0.0F)};
-    frame.image.object.assign(num_pixels, -1);
-    frame.image.normals_in_camera.assign(num_pixels, Eigen::Vector3f::Zero());
-    frame.silhouette = {camera.width, camera.height, std::vector<std::uint8_t>(num_pixels, 0)};
-    frame.visible = frame.silhouette;
-    return frame;
+    RenderedImage image;
+    image.depth = {camera.width, camera.height, std::vector<float>(num_pixels, 0.0F)};
+    image.object.assign(num_pixels, -1);
+    image.normals_in_camera.assign(num_pixels, Eigen::Vector3f::Zero());
+    return image;
+}
+
+Mask empty_mask(const PinholeCamera& camera) {
+    return {camera.width, camera.height,
+            std::vector<std::uint8_t>(static_cast<std::size_t>(camera.width) * camera.height, 0)};
 }
 
 // Enters hit `i` at `pixel` where nothing nearer stands.
@@ -53,6 +41,54 @@ void enter(const RayHits& hits, std::size_t i, std::size_t pixel, int object, co
     image.normals_in_camera[pixel] = rotation * hits.normals_in_object[i];
 }
 
+// Enters a part that the truth speaks of: it is cast over the whole canvas, for the pixels outside the image count for
+// the visible fraction.
+InstanceView enter_instance(const EmbreeScene& part, const Pose& camera_from_object, const PinholeCamera& camera,
+                            int object, RenderedImage& image) {
+    InstanceView instance;
+    instance.silhouette = empty_mask(camera);
+    instance.truth.camera_from_object = camera_from_object;
+    const PixelBox box = silhouette_canvas(part.extent(), camera_from_object, camera);
+    if (box.empty()) return instance;
+    const Eigen::Matrix3f rotation = camera_from_object.rotation_matrix().cast<float>();
+    const PixelGrid grid{box.first_u, box.first_v, 1, box.last_u - box.first_u, box.last_v - box.first_v};
+    const RayHits hits = part.cast(camera_from_object, camera_of(grid, camera));
+    PixelBox silhouette{box.last_u, box.last_v, box.first_u, box.first_v};
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        const int u = grid.image_u(hits.pixels[i]), v = grid.image_v(hits.pixels[i]);
+        silhouette = widened(silhouette, Eigen::Vector2d(u, v));
+        if (u < 0 || v < 0 || u >= camera.width || v >= camera.height) continue;
+        const std::size_t pixel = static_cast<std::size_t>(v) * camera.width + u;
+        instance.silhouette.value[pixel] = 255;
+        enter(hits, i, pixel, object, rotation, image);
+    }
+    instance.truth.silhouette_pixels = static_cast<int>(hits.size());
+    if (hits.size() > 0) {
+        instance.truth.silhouette_box = {silhouette.first_u, silhouette.first_v, silhouette.last_u - silhouette.first_u,
+                                         silhouette.last_v - silhouette.first_v};
+    }
+    return instance;
+}
+
+void enter_thing(const EmbreeScene& thing, const Pose& camera_from_thing, const PinholeCamera& camera, int object,
+                 RenderedImage& image) {
+    const RayHits hits = thing.cast(camera_from_thing, camera);
+    const Eigen::Matrix3f rotation = camera_from_thing.rotation_matrix().cast<float>();
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        enter(hits, i, static_cast<std::size_t>(hits.pixels[i]), object, rotation, image);
+    }
+}
+
+void count_visible(const RenderedImage& image, int object, const PinholeCamera& camera, InstanceView& instance) {
+    instance.visible = empty_mask(camera);
+    for (std::size_t pixel = 0; pixel < image.object.size(); ++pixel) {
+        if (image.object[pixel] != object) continue;
+        instance.visible.value[pixel] = 255;
+        ++instance.truth.visible_pixels;
+    }
+    instance.truth.visible_box = data_set::box_of(instance.visible);
+}
+
 }  // namespace
 
 PixelBox silhouette_canvas(const ModelExtent& extent, const Pose& camera_from_object, const PinholeCamera& camera) {
@@ -60,7 +96,7 @@ PixelBox silhouette_canvas(const ModelExtent& extent, const Pose& camera_from_ob
     const int margin_u = std::min(2 * w, (kMaxCanvasSide - w) / 2),
               margin_v = std::min(2 * h, (kMaxCanvasSide - h) / 2);
     const PixelBox widest{-margin_u, -margin_v, w + margin_u, h + margin_v};
-    PixelBox box{0, 0, w, h};
+    PixelBox box{widest.last_u, widest.last_v, widest.first_u, widest.first_v};
     for (int corner = 0; corner < 8; ++corner) {
         Eigen::Vector3d point;
         for (int axis = 0; axis < 3; ++axis) {
@@ -75,44 +111,31 @@ PixelBox silhouette_canvas(const ModelExtent& extent, const Pose& camera_from_ob
     return box;
 }
 
-Scene::Scene(const Mesh& part, bool with_table) : part_(part) {
-    if (with_table) table_.emplace(table_under(part_.extent()));
+Scene::Scene(const Mesh& part, const World& world) : part_(part), scene_from_copies_(world.copies) {
+    if (world.other) {
+        other_.emplace(world.other->mesh);
+        scene_from_other_ = world.other->scene_from_object;
+    }
+    if (!world.surroundings_in_scene.triangles.empty()) surroundings_.emplace(world.surroundings_in_scene);
+    if (!world.gripper_in_camera.triangles.empty()) gripper_.emplace(world.gripper_in_camera);
 }
 
-RenderedFrame Scene::render(const Pose& camera_from_object, const PinholeCamera& camera) const {
-    RenderedFrame frame = empty_frame(camera);
-    const Eigen::Matrix3f rotation = camera_from_object.rotation_matrix().cast<float>();
-    // The part is cast over the whole canvas: pixels outside the image count for the visible fraction alone.
-    const PixelBox box = silhouette_canvas(extent(), camera_from_object, camera);
-    const PixelGrid grid{box.first_u, box.first_v, 1, box.last_u - box.first_u, box.last_v - box.first_v};
-    const RayHits part = part_.cast(camera_from_object, camera_of(grid, camera));
-    PixelBox silhouette{box.last_u, box.last_v, box.first_u, box.first_v};
-    for (std::size_t i = 0; i < part.size(); ++i) {
-        const int u = grid.image_u(part.pixels[i]), v = grid.image_v(part.pixels[i]);
-        silhouette = widened(silhouette, Eigen::Vector2d(u, v));
-        if (u < 0 || v < 0 || u >= camera.width || v >= camera.height) continue;
-        const std::size_t pixel = static_cast<std::size_t>(v) * camera.width + u;
-        frame.silhouette.value[pixel] = 255;
-        enter(part, i, pixel, kPartIndex, rotation, frame.image);
+RenderedFrame Scene::render(const Pose& camera_from_object, const Pose& camera_from_scene,
+                            const PinholeCamera& camera) const {
+    RenderedFrame frame;
+    frame.image = empty_image(camera);
+    int object = kPartIndex;
+    const auto add = [&](const EmbreeScene& part, const Pose& pose) {
+        frame.instances.push_back(enter_instance(part, pose, camera, object++, frame.image));
+    };
+    add(part_, camera_from_object);
+    for (const Pose& scene_from_copy : scene_from_copies_) add(part_, camera_from_scene * scene_from_copy);
+    if (other_) add(*other_, camera_from_scene * scene_from_other_);
+    if (surroundings_) enter_thing(*surroundings_, camera_from_scene, camera, object++, frame.image);
+    if (gripper_) enter_thing(*gripper_, Pose::identity(), camera, object++, frame.image);
+    for (std::size_t i = 0; i < frame.instances.size(); ++i) {
+        count_visible(frame.image, static_cast<int>(i), camera, frame.instances[i]);
     }
-    if (table_) {
-        const RayHits table = table_->cast(camera_from_object, camera);
-        for (std::size_t i = 0; i < table.size(); ++i) {
-            enter(table, i, static_cast<std::size_t>(table.pixels[i]), kTableIndex, rotation, frame.image);
-        }
-    }
-    for (std::size_t pixel = 0; pixel < frame.visible.value.size(); ++pixel) {
-        if (frame.image.object[pixel] == kPartIndex) frame.visible.value[pixel] = 255;
-    }
-    frame.truth.camera_from_object = camera_from_object;
-    frame.truth.silhouette_pixels = static_cast<int>(part.size());
-    if (part.size() > 0) {
-        frame.truth.silhouette_box = {silhouette.first_u, silhouette.first_v, silhouette.last_u - silhouette.first_u,
-                                      silhouette.last_v - silhouette.first_v};
-    }
-    frame.truth.visible_pixels =
-        static_cast<int>(std::count(frame.visible.value.begin(), frame.visible.value.end(), std::uint8_t{255}));
-    frame.truth.visible_box = data_set::box_of(frame.visible);
     return frame;
 }
 

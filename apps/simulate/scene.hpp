@@ -1,9 +1,12 @@
-// The part on its table, rendered with what the ground truth says of it.
+// The part and what stands around it, rendered with what the ground truth says of them.
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "apps/data_set/bop_writer.hpp"
+#include "apps/simulate/world.hpp"
 #include "core/camera.hpp"
 #include "core/depth_image.hpp"
 #include "core/pose.hpp"
@@ -12,33 +15,39 @@
 
 namespace nearpose::simulate {
 
-inline constexpr int kPartIndex = 0;   // in RenderedImage::object
-inline constexpr int kTableIndex = 1;  //
+inline constexpr int kPartIndex = 0;  // in RenderedImage::object; other instances, surroundings and gripper follow
+
+// A part in an image. The truth lacks measured_pixels and object_id, which the sensor and the data set decide.
+struct InstanceView {
+    Mask silhouette;              // pixels whose ray meets it
+    Mask visible;                 // of these, where nothing is before it
+    data_set::ObjectTruth truth;  //
+};
 
 struct RenderedFrame {
-    RenderedImage image;          // exact depth; object as above, -1 for nothing
-    Mask silhouette;              // pixels whose ray meets the part
-    Mask visible;                 // of these, where nothing is before the part
-    data_set::ObjectTruth truth;  // but for measured_pixels and object_id, which the sensor and the data set decide
+    RenderedImage image;                  // exact depth; object as above, -1 for nothing
+    std::vector<InstanceView> instances;  // the tracked part, its copies, the other part
 };
 
 // Immutable; render may be called from several threads at once.
 class Scene {
   public:
-    // The table's top lies at the part's lowest point, its normal along the object's z.
-    Scene(const Mesh& part, bool with_table);
+    Scene(const Mesh& part, const World& world);
 
-    RenderedFrame render(const Pose& camera_from_object, const PinholeCamera& camera) const;
+    RenderedFrame render(const Pose& camera_from_object, const Pose& camera_from_scene,
+                         const PinholeCamera& camera) const;
 
-    const ModelExtent& extent() const { return part_.extent(); }
+    const EmbreeScene& part() const { return part_; }
 
   private:
     EmbreeScene part_;
-    std::optional<EmbreeScene> table_;
+    std::vector<Pose> scene_from_copies_;
+    std::optional<EmbreeScene> other_, surroundings_, gripper_;
+    Pose scene_from_other_;
 };
 
-// The image plane around an image, as far as the part's box reaches, so that the silhouette is counted whole. Ends two
-// image sizes from the image: of a part that reaches farther, or behind the camera, only so much is counted.
+// The pixels, also outside the image, that a part's box covers. Ends two image sizes from the image: of a part that
+// reaches farther, or behind the camera, only so much is counted.
 PixelBox silhouette_canvas(const ModelExtent& extent, const Pose& camera_from_object, const PinholeCamera& camera);
 
 }  // namespace nearpose::simulate

@@ -3,73 +3,130 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "apps/console.hpp"
 #include "apps/data_set/camera_json.hpp"
 #include "apps/model_input.hpp"
 #include "apps/simulate/parts.hpp"
+#include "apps/simulate/sensor_file.hpp"
 #include "apps/simulate/simulate.hpp"
 
 namespace nearpose::program {
 namespace {
 
+using simulate::RecordingOptions;
+using simulate::Scenario;
 using simulate::SimulationOptions;
 
-// As on the command line: millimetres and degrees.
+// As on the command line: millimetres, degrees, milliseconds.
 struct CommandOptions {
-    ModelOptions model;
     std::filesystem::path out;
+    bool force = false;
+    int threads = 0;
+
     std::string scenario = "piston";
+    std::string part = "engine_block";
+    ModelOptions model;
+    std::uint64_t seed = 1;
     int frames = 0;  // 0: as many as the scenario has by itself
     double fps = 30.0;
-    std::uint64_t seed = 1;
-    double noise_scale = 1.0;
-    std::filesystem::path camera;
-    double arm_mm = 0.1;
-    double arm_deg = 0.02;
-    double hand_eye_mm = 0.0;
-    double hand_eye_deg = 0.0;
-    int threads = 0;
     bool no_table = false;
-    bool force = false;
+
+    std::filesystem::path trajectory;
+    std::optional<double> conveyor_mm, conveyor_deg, occlusion;
+
+    std::string sensor;
+    std::filesystem::path camera;
+    double noise_scale = 1.0;
+    double drop_frames = 0.0;
+
+    double arm_mm = 0.1, arm_deg = 0.02;
+    double hand_eye_mm = 0.0, hand_eye_deg = 0.0;
+    double time_offset_ms = 0.0;
+
+    simulate::MaskErrors mask;
 };
 
 double radians(double degrees) {
     return degrees * M_PI / 180.0;
 }
 
-SimulationOptions simulation_options(const CommandOptions& command) {
-    SimulationOptions options;
-    options.data_set = command.out;
-    options.replace = command.force;
-    options.scenario = simulate::scenario_of(command.scenario);
-    options.num_frames = command.frames == 0 ? simulate::default_frames(options.scenario) : command.frames;
-    options.frames_per_second = command.fps;
-    options.seed = command.seed;
+// TUM's own recordings give four digits of a quaternion.
+constexpr double kMaxNormError = 1e-3;
+
+void require_scenario(bool given, const char* option, Scenario needed, Scenario chosen) {
+    if (!given || needed == chosen) return;
+    throw BadUse(std::string(option) + " belongs to --scenario " + simulate::name_of(needed) + ", not " +
+                 simulate::name_of(chosen));
+}
+
+simulate::ScenarioOptions scenario_options(const CommandOptions& command, Scenario scenario) {
+    require_scenario(!command.trajectory.empty(), "--trajectory", Scenario::kHandheld, scenario);
+    require_scenario(command.conveyor_mm.has_value(), "--conveyor-mm", Scenario::kConveyor, scenario);
+    require_scenario(command.conveyor_deg.has_value(), "--conveyor-deg", Scenario::kConveyor, scenario);
+    require_scenario(command.occlusion.has_value(), "--occlusion", Scenario::kClutter, scenario);
+    simulate::ScenarioOptions options;
+    if (!command.trajectory.empty()) options.trajectory = data_set::read_tum(command.trajectory, kMaxNormError);
+    if (command.conveyor_mm) options.conveyor_step_m = *command.conveyor_mm * 1e-3;
+    if (command.conveyor_deg) options.conveyor_turn_rad = radians(*command.conveyor_deg);
+    options.occlusion = command.occlusion;
+    return options;
+}
+
+// The sensor's own camera, unless another one is named.
+void set_sensor(const CommandOptions& command, RecordingOptions& options) {
+    if (!command.sensor.empty()) {
+        const simulate::SensorDescription sensor = simulate::read_sensor(command.sensor);
+        options.camera = sensor.camera;
+        options.depth_scale_mm = sensor.depth_scale_mm;
+        options.sensor = sensor.noise;
+    }
     if (!command.camera.empty()) {
         const data_set::CameraFile file = data_set::read_camera_json(command.camera);
         options.camera = file.camera;
         if (file.depth_scale_mm) options.depth_scale_mm = *file.depth_scale_mm;
     }
-    options.sensor = simulate::scaled({}, command.noise_scale);
-    options.arm = {command.arm_mm * 1e-3, radians(command.arm_deg), command.hand_eye_mm * 1e-3,
-                   radians(command.hand_eye_deg)};
-    options.with_table = !command.no_table;
+    options.sensor = simulate::scaled(options.sensor, command.noise_scale);
+}
+
+SimulationOptions simulation_options(const CommandOptions& command) {
+    SimulationOptions options;
+    options.data_set = command.out;
+    options.replace = command.force;
     options.num_threads = command.threads;
+    RecordingOptions& recording = options.recording;
+    recording.scenario = simulate::scenario_of(command.scenario);
+    recording.path = scenario_options(command, recording.scenario);
+    recording.num_frames = command.frames;
+    recording.frames_per_second = command.fps;
+    recording.seed = command.seed;
+    set_sensor(command, recording);
+    recording.arm = {command.arm_mm * 1e-3, radians(command.arm_deg), command.hand_eye_mm * 1e-3,
+                     radians(command.hand_eye_deg), command.time_offset_ms * 1e-3};
+    recording.mask = command.mask;
+    recording.dropped_fraction = command.drop_frames;
+    recording.with_table = !command.no_table;
+    if (command.model.model.empty()) recording.part_name = command.part;
     return options;
 }
 
-int simulate_recording(const CommandOptions& command, const SharedOptions& shared) {
-    const SimulationOptions options = simulation_options(command);
-    const bool embedded = command.model.model.empty();
-    if (embedded && !command.model.unit.empty())
-        throw BadUse("--unit belongs to --model: the built-in part needs none");
-    const Mesh mesh = embedded ? simulate::embedded_part("engine_block").mesh : load_model(command.model, shared);
-    const ModelExtent extent = extent_of(mesh);
-    const simulate::Part part = embedded ? simulate::engine_block_part(extent) : simulate::box_part(extent);
+simulate::EmbeddedPart part_of(const CommandOptions& command, bool part_given, const SharedOptions& shared) {
+    if (command.model.model.empty()) {
+        if (!command.model.unit.empty()) throw BadUse("--unit belongs to --model: a built-in part needs none");
+        return simulate::embedded_part(command.part);
+    }
+    if (part_given) throw BadUse("--part and --model name two parts: leave one out");
+    const Mesh mesh = load_model(command.model, shared);
+    return {mesh, simulate::box_part(extent_of(mesh))};
+}
 
-    Progress progress("simulate", options.num_frames, shared.quiet);
-    const simulate::SimulationSummary summary = simulate::write_data_set(mesh, part, options, [&progress] {
+int simulate_recording(const CommandOptions& command, bool part_given, const SharedOptions& shared) {
+    const SimulationOptions options = simulation_options(command);
+    const simulate::EmbeddedPart part = part_of(command, part_given, shared);
+    const int frames = command.frames == 0 ? simulate::default_frames(options.recording.scenario) : command.frames;
+    Progress progress("simulate", frames - simulate::num_dropped(options.recording), shared.quiet);
+    const simulate::SimulationSummary summary = simulate::write_data_set(part.mesh, part.part, options, [&progress] {
         progress.step();
         return !interrupted();
     });
@@ -82,32 +139,80 @@ int simulate_recording(const CommandOptions& command, const SharedOptions& share
     return kSuccess;
 }
 
-void add_options(CLI::App& command, CommandOptions& options) {
-    add_model_file_options(command, options.model);
-    command.get_option("--model")->description("Model file; without it the built-in engine block");
-    command.add_option("--out", options.out, "Folder of the BOP data set to write")->required();
-    command.add_option("--scenario", options.scenario, "baseline: still, whole part in view; piston: down to a bore")
+void add_task_options(CLI::App& command, CommandOptions& options) {
+    command
+        .add_option("--scenario", options.scenario,
+                    "baseline: still, whole part in view; piston: down to a bore; crankcase: the same onto the "
+                    "underside; sweep: straight down, 60 to 10 cm; conveyor: still camera, moving part; handheld; "
+                    "clutter: among things, behind a gripper; bin: several copies")
         ->check(CLI::IsMember(simulate::scenario_names()));
     command.add_option("--seed", options.seed, "Same seed, same files");
-    command.add_option("--frames", options.frames, "Number of frames; 0: 60 for piston, 30 for baseline")
+    command.add_option("--frames", options.frames, "Number of frames; 0: 30 for baseline and conveyor, 60 for others")
         ->check(CLI::Range(0, 100000));
     command.add_option("--fps", options.fps, "Frames per second")->check(CLI::Range(0.001, 10000.0));
+    command
+        .add_option("--conveyor-mm", options.conveyor_mm, "conveyor: way of the part in mm a frame; else drawn, 0-10")
+        ->check(CLI::Range(0.0, 1000.0));
+    command.add_option("--conveyor-deg", options.conveyor_deg, "conveyor: turn in degrees a frame; else drawn, 0-1")
+        ->check(CLI::Range(0.0, 28.0));
+    command
+        .add_option("--trajectory", options.trajectory,
+                    "handheld: camera path, TUM rows (world_from_camera, m, s); else a made-up hand")
+        ->check(CLI::ExistingFile);
+    command
+        .add_option("--occlusion", options.occlusion,
+                    "clutter: hidden fraction of the silhouette where most is; else drawn, 0.2-0.5")
+        ->check(CLI::Range(0.0, simulate::kMaxOcclusion));
+    command.add_flag("--no-table", options.no_table, "Leave out the table that the part stands on, and the bin");
+    for (const char* name : {"--scenario", "--seed", "--frames", "--fps", "--conveyor-mm", "--conveyor-deg",
+                             "--trajectory", "--occlusion", "--no-table"}) {
+        command.get_option(name)->group("Task");
+    }
+}
+
+CLI::Option* add_part_options(CLI::App& command, CommandOptions& options) {
+    CLI::Option* part =
+        command.add_option("--part", options.part, "Built-in part")->check(CLI::IsMember(simulate::part_names()));
+    add_model_file_options(command, options.model);
+    command.get_option("--model")->description("Model file, instead of a built-in part");
+    for (const char* name : {"--part", "--model", "--unit"}) command.get_option(name)->group("Part");
+    return part;
+}
+
+void add_sensor_options(CLI::App& command, CommandOptions& options) {
+    std::string names;
+    for (const std::string& name : simulate::sensor_names()) names += (names.empty() ? "" : ", ") + name;
+    command.add_option("--sensor", options.sensor,
+                       "Sets camera, depth scale and noise: " + names +
+                           ", or a JSON file; without it a close-range "
+                           "stereo camera, 640x480 with fx = fy = 600 pixels, 0.1 mm a count");
+    command.add_option("--camera", options.camera, "camera.json, instead of the sensor's own camera and depth scale")
+        ->check(CLI::ExistingFile);
     command.add_option("--noise-scale", options.noise_scale, "Times the sensor's faults; 0: exact depth")
         ->check(CLI::Range(0.0, 100.0));
+    command.add_option("--drop-frames", options.drop_frames, "Fraction of the frames that are lost, never the first")
+        ->check(CLI::Range(0.0, 0.95));
+    command.add_option("--mask-grow", options.mask.grow_pixels, "Given mask: pixels to dilate, negative: to erode")
+        ->check(CLI::Range(-1000, 1000));
     command
-        .add_option("--camera", options.camera, "camera.json; without it 640x480 with fx = fy = 600, 0.1 mm a count")
-        ->check(CLI::ExistingFile);
-    command.add_option("--arm-mm", options.arm_mm, "Noise of the reported camera position, standard deviation an axis")
-        ->check(CLI::Range(0.0, 1000.0));
-    command.add_option("--arm-deg", options.arm_deg, "Noise of the reported orientation, standard deviation an axis")
-        ->check(CLI::Range(0.0, 45.0));
-    command.add_option("--hand-eye-mm", options.hand_eye_mm, "Constant error of the reported position")
-        ->check(CLI::Range(0.0, 1000.0));
-    command.add_option("--hand-eye-deg", options.hand_eye_deg, "Constant error of the reported orientation")
-        ->check(CLI::Range(0.0, 45.0));
-    command.add_option("--threads", options.threads, "0: as many as the machine has")->check(CLI::Range(0, 1024));
-    command.add_flag("--no-table", options.no_table, "Leave out the table that the part stands on");
-    command.add_flag("--force", options.force, "Replace a data set that is there already");
+        .add_option("--mask-bleed", options.mask.bleed_pixels, "Given mask: pixels to spill onto what touches the part")
+        ->check(CLI::Range(0, 1000));
+    for (const char* name : {"--sensor", "--camera", "--noise-scale", "--drop-frames", "--mask-grow", "--mask-bleed"}) {
+        command.get_option(name)->group("Sensor");
+    }
+}
+
+void add_arm_options(CLI::App& command, CommandOptions& options) {
+    const auto add = [&](const char* name, double& value, const char* text, double low, double high) {
+        command.add_option(name, value, text)->check(CLI::Range(low, high))->group("Arm");
+    };
+    add("--arm-mm", options.arm_mm, "Noise of the reported camera position in mm, standard deviation an axis", 0, 1000);
+    add("--arm-deg", options.arm_deg, "Noise of the reported orientation in degrees, standard deviation an axis", 0,
+        45);
+    add("--hand-eye-mm", options.hand_eye_mm, "Constant error of the reported position in mm", 0, 1000);
+    add("--hand-eye-deg", options.hand_eye_deg, "Constant error of the reported orientation in degrees", 0, 45);
+    add("--time-offset-ms", options.time_offset_ms, "The arm's pose is the camera's so many ms after the frame", -10000,
+        10000);
 }
 
 }  // namespace
@@ -115,9 +220,17 @@ void add_options(CLI::App& command, CommandOptions& options) {
 void add_simulate_command(CLI::App& app, const SharedOptions& shared, Run& run) {
     auto options = std::make_shared<CommandOptions>();
     CLI::App* command = app.add_subcommand("simulate", "Simulated depth recording of a part, as a BOP data set");
-    add_options(*command, *options);
-    command->callback(
-        [options, &shared, &run] { run = [options, &shared] { return simulate_recording(*options, shared); }; });
+    command->add_option("--out", options->out, "Folder of the BOP data set to write")->required();
+    command->add_flag("--force", options->force, "Replace a data set that is there already");
+    command->add_option("--threads", options->threads, "0: as many as the machine has")->check(CLI::Range(0, 1024));
+    add_task_options(*command, *options);
+    const CLI::Option* part = add_part_options(*command, *options);
+    add_sensor_options(*command, *options);
+    add_arm_options(*command, *options);
+    command->callback([options, part, &shared, &run] {
+        const bool part_given = part->count() > 0;
+        run = [options, part_given, &shared] { return simulate_recording(*options, part_given, shared); };
+    });
 }
 
 }  // namespace nearpose::program

@@ -29,8 +29,8 @@ class Approach : public testing::Test {
         simulate::SimulationOptions options;
         options.data_set = folder_;
         options.replace = true;
-        options.num_frames = frames;
-        options.seed = seed;
+        options.recording.num_frames = frames;
+        options.recording.seed = seed;
         const Mesh mesh = simulate::embedded_part("engine_block").mesh;
         simulate::write_data_set(mesh, simulate::engine_block_part(extent_of(mesh)), options, [] { return true; });
         return folder_ / "test/000001";

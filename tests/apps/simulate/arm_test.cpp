@@ -19,7 +19,7 @@ std::vector<Pose> some_path(int count) {
     return path;
 }
 
-const ArmErrors kNone{0.0, 0.0, 0.0, 0.0};
+const ArmErrors kNone{0.0, 0.0, 0.0, 0.0, 0.0};
 
 TEST(MeasuredMotion, WithoutErrorsTheObjectStandsStillInTheWorld) {
     const std::vector<Pose> path = some_path(20);
@@ -48,7 +48,7 @@ TEST(MeasuredMotion, ErrorsHaveTheSizeAskedForAlongEveryAxis) {
 
 TEST(MeasuredMotion, HandEyeErrorIsTheSameInAllFrames) {
     const std::vector<Pose> path = some_path(5);
-    const ArmErrors errors{0.0, 0.0, 0.002, 0.01};
+    const ArmErrors errors{0.0, 0.0, 0.002, 0.01, 0.0};
     const std::vector<Pose> exact = measured_motion(path, kNone, 3), motion = measured_motion(path, errors, 3);
     const Twist first = log(motion[0] * exact[0].inverse());
     EXPECT_NEAR(first.head<3>().norm(), 0.01, 1e-9);
@@ -59,7 +59,7 @@ TEST(MeasuredMotion, HandEyeErrorIsTheSameInAllFrames) {
 }
 
 TEST(MeasuredMotion, RefusesNegativeErrors) {
-    EXPECT_THROW(measured_motion(some_path(1), {-1e-4, 0.0, 0.0, 0.0}, 1), std::invalid_argument);
+    EXPECT_THROW(measured_motion(some_path(1), {-1e-4, 0.0, 0.0, 0.0, 0.0}, 1), std::invalid_argument);
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ TEST(EmbeddedModel, HasItsDeckAndBoresWhereThePartSays) {
 TEST(Baseline, StandsStillAndHasTheWholePartInView) {
     const Part part = block();
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
-        const std::vector<Pose> path = camera_path(Scenario::kBaseline, part, kCamera, 3, seed);
+        const std::vector<Pose> path = task_path(Scenario::kBaseline, part, kCamera, 3, seed).camera_from_object;
         ASSERT_EQ(path.size(), 3u);
         EXPECT_EQ(log(path[0].inverse() * path[2]).norm(), log(path[0].inverse() * path[0]).norm());
         const Eigen::Vector3d centre = path[0] * part.extent.centre_in_object();
@@ -78,7 +78,7 @@ TEST(Piston, ComesDownToABoreAndTurnsUpright) {
     const Part part = block();
     const ApproachLimits limits;
     for (std::uint64_t seed = 0; seed < 50; ++seed) {
-        const std::vector<Pose> path = camera_path(Scenario::kPiston, part, kCamera, 60, seed);
+        const std::vector<Pose> path = task_path(Scenario::kPiston, part, kCamera, 60, seed).camera_from_object;
         ASSERT_EQ(path.size(), 60u);
         const Sight first = sight_of(path.front(), part), last = sight_of(path.back(), part);
         EXPECT_NEAR(first.height_m, 0.60, 1e-6);
@@ -106,8 +106,8 @@ TEST(Piston, ComesDownToABoreAndTurnsUpright) {
 }
 
 TEST(Piston, SeedsDiffer) {
-    const Pose a = camera_path(Scenario::kPiston, block(), kCamera, 5, 1).front();
-    const Pose b = camera_path(Scenario::kPiston, block(), kCamera, 5, 2).front();
+    const Pose a = task_path(Scenario::kPiston, block(), kCamera, 5, 1).camera_from_object.front();
+    const Pose b = task_path(Scenario::kPiston, block(), kCamera, 5, 2).camera_from_object.front();
     EXPECT_GT((a.inverse().translation - b.inverse().translation).norm(), 0.01);
 }
 
@@ -115,7 +115,7 @@ TEST(Piston, ScalesWithThePart) {
     const ModelExtent extent{Eigen::Vector3d(0.1, 0.2, 0.3), Eigen::Vector3d(0.2, 0.4, 0.5)};
     const Part part = box_part(extent);
     const double scale = extent.diameter_m() / kReferenceDiameter_m;
-    const std::vector<Pose> path = camera_path(Scenario::kPiston, part, kCamera, 2, 3);
+    const std::vector<Pose> path = task_path(Scenario::kPiston, part, kCamera, 2, 3).camera_from_object;
     EXPECT_NEAR(sight_of(path.front(), part).height_m, 0.60 * scale, 1e-9);
     EXPECT_NEAR(sight_of(path.back(), part).height_m, 0.18 * scale, 1e-9);
     const Eigen::Vector3d foot = sight_of(path.back(), part).foot;
@@ -126,10 +126,10 @@ TEST(Piston, ScalesWithThePart) {
 TEST(Scenarios, RefuseWhatTheyCannotDo) {
     for (const std::string& name : scenario_names()) EXPECT_NO_THROW(scenario_of(name));
     EXPECT_THROW(scenario_of("pistn"), std::invalid_argument);
-    EXPECT_THROW(camera_path(Scenario::kPiston, block(), kCamera, 0, 1), std::invalid_argument);
+    EXPECT_THROW(task_path(Scenario::kPiston, block(), kCamera, 0, 1), std::invalid_argument);
     PinholeCamera squinting = kCamera;
     squinting.cx = 1e5;
-    EXPECT_THROW(camera_path(Scenario::kBaseline, block(), squinting, 1, 1), std::invalid_argument);
+    EXPECT_THROW(task_path(Scenario::kBaseline, block(), squinting, 1, 1), std::invalid_argument);
 }
 
 }  // namespace

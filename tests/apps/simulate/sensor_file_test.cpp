@@ -46,7 +46,7 @@ TEST(SensorFile, CloseStereoIsTheDefault) {
     SensorDescription defaults = sensor;
     defaults.noise = SensorNoise{};
     defaults.camera = default_camera();
-    defaults.depth_scale_mm = SimulationOptions{}.depth_scale_mm;
+    defaults.depth_scale_mm = RecordingOptions{}.depth_scale_mm;
     EXPECT_EQ(written(sensor), written(defaults));
 }
 

@@ -39,8 +39,8 @@ fs::path fresh_folder(const std::string& name) {
 SimulationOptions small_options(const fs::path& out) {
     SimulationOptions options;
     options.data_set = out;
-    options.num_frames = 5;
-    options.camera = {160, 120, 150.0, 150.0, 79.5, 59.5};
+    options.recording.num_frames = 5;
+    options.recording.camera = {160, 120, 150.0, 150.0, 79.5, 59.5};
     options.num_threads = 1;
     return options;
 }
@@ -68,7 +68,7 @@ TEST(Simulate, SameSeedSameBytesForAnyNumberOfThreads) {
     options.num_threads = 2;
     ASSERT_TRUE(simulate_block(options).complete);
     options.data_set = folder / "other";
-    options.seed = 2;
+    options.recording.seed = 2;
     ASSERT_TRUE(simulate_block(options).complete);
     const auto one = files_below(folder / "one"), other = files_below(folder / "other");
     EXPECT_EQ(one.size(), 5u * 3u + 3u + 1u + 4u + 2u);
@@ -118,7 +118,7 @@ TEST(Simulate, WrittenFilesReadBackAndAgree) {
 TEST(Simulate, WithoutNoiseTheTruthRendersToTheDepthAndTheMasks) {
     const fs::path folder = fresh_folder("exact");
     SimulationOptions options = small_options(folder / "set");
-    options.sensor = scaled(options.sensor, 0.0);
+    options.recording.sensor = scaled(options.recording.sensor, 0.0);
     simulate_block(options);
     const data_set::BopScene scene = data_set::open_scene(folder / "set/test/000001");
     const std::map<int, Pose> truth = data_set::read_ground_truth(scene.folder, 1);
@@ -160,12 +160,12 @@ TEST(Simulate, WithoutNoiseTheTruthRendersToTheDepthAndTheMasks) {
 TEST(Simulate, ResidualsSpreadAsTheSensorSays) {
     const fs::path folder = fresh_folder("spread");
     SimulationOptions options = small_options(folder / "set");
-    options.scenario = Scenario::kBaseline;
-    options.with_table = false;
-    options.sensor.jitter_pixels = 0.0;
-    options.sensor.bias_sigma_m = 0.0;
-    options.sensor.disparity_step_pixels = 0.0;
-    options.sensor.flying_probability = 0.0;
+    options.recording.scenario = Scenario::kBaseline;
+    options.recording.with_table = false;
+    options.recording.sensor.jitter_pixels = 0.0;
+    options.recording.sensor.bias_sigma_m = 0.0;
+    options.recording.sensor.disparity_step_pixels = 0.0;
+    options.recording.sensor.flying_probability = 0.0;
     simulate_block(options);
     const data_set::BopScene scene = data_set::open_scene(folder / "set/test/000001");
     const std::map<int, Pose> truth = data_set::read_ground_truth(scene.folder, 1);
@@ -178,7 +178,7 @@ TEST(Simulate, ResidualsSpreadAsTheSensorSays) {
             if (depth.depth_m[i] == 0.0F) continue;
             ASSERT_GT(exact.depth_m[i], 0.0F);  // without a table nothing else is seen
             const double z = exact.depth_m[i];
-            normalised.push_back(std::abs(depth.depth_m[i] - z) / options.sensor.sigma_m(z));
+            normalised.push_back(std::abs(depth.depth_m[i] - z) / options.recording.sensor.sigma_m(z));
         }
     }
     ASSERT_GT(normalised.size(), 3000u);
@@ -190,8 +190,8 @@ TEST(Simulate, PistonEndsWithThePartFillingTheImage) {
     const fs::path folder = fresh_folder("fill");
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
         SimulationOptions options = small_options(folder / std::to_string(seed));
-        options.num_frames = 3;
-        options.seed = seed;
+        options.recording.num_frames = 3;
+        options.recording.seed = seed;
         simulate_block(options);
         const data_set::JsonFile info(options.data_set / "test/000001/scene_gt_info.json");
         const auto last = info.root().at("2").elements().at(0);
@@ -205,8 +205,8 @@ TEST(Simulate, TableFillsTheBackground) {
     const fs::path folder = fresh_folder("table");
     for (const bool with_table : {true, false}) {
         SimulationOptions options = small_options(folder / (with_table ? "with" : "without"));
-        options.num_frames = 1;
-        options.with_table = with_table;
+        options.recording.num_frames = 1;
+        options.recording.with_table = with_table;
         simulate_block(options);
         const data_set::BopScene scene = data_set::open_scene(options.data_set / "test/000001");
         const DepthImage depth = data_set::load_depth(scene.frames[0]);
@@ -225,11 +225,11 @@ TEST(Simulate, TableFillsTheBackground) {
 TEST(Simulate, ReplacesOnlyWhatItIsToldTo) {
     const fs::path folder = fresh_folder("replace");
     SimulationOptions options = small_options(folder / "set");
-    options.num_frames = 1;
+    options.recording.num_frames = 1;
     fs::create_directories(options.data_set);  // empty: may be filled
     simulate_block(options);
     const auto first = files_below(options.data_set);
-    options.seed = 2;
+    options.recording.seed = 2;
     EXPECT_THROW(simulate_block(options), std::runtime_error);
     EXPECT_TRUE(files_below(options.data_set) == first);
     options.replace = true;
@@ -268,10 +268,10 @@ TEST(Simulate, TakesAnyPart) {
 TEST(Simulate, RefusesOptionsOutOfBounds) {
     const fs::path folder = fresh_folder("bounds");
     SimulationOptions options = small_options(folder / "set");
-    options.num_frames = 0;
+    options.recording.num_frames = -1;
     EXPECT_THROW(simulate_block(options), std::invalid_argument);
     options = small_options(folder / "set");
-    options.depth_scale_mm = 200.0;  // one count would be more than the least range
+    options.recording.depth_scale_mm = 200.0;  // one count would be more than the least range
     EXPECT_THROW(simulate_block(options), std::invalid_argument);
     EXPECT_TRUE(fs::is_empty(folder));
 }
