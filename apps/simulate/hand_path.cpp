@@ -59,8 +59,9 @@ std::vector<Pose> drawn_part(const std::vector<StampedPose>& trajectory, int num
     const double has_s = trajectory.back().stamp_s - trajectory.front().stamp_s;
     const double needs_s = (num_frames - 1) / frames_per_second;
     if (needs_s > has_s + 1e-6) {
-        throw std::invalid_argument("the trajectory lasts " + data_set::format_number(has_s) + " s, but " +
-                                    std::to_string(num_frames) + " frames take " + data_set::format_number(needs_s) +
+        const auto text = [](double time_s) { return data_set::format_number(std::round(time_s * 1e3) / 1e3); };
+        throw std::invalid_argument("the trajectory lasts " + text(has_s) + " s, but " + std::to_string(num_frames) +
+                                    " frames take " + text(needs_s) +
                                     " s: ask for fewer frames or more frames per second");
     }
     const double start_s = trajectory.front().stamp_s + random.uniform() * std::max(0.0, has_s - needs_s);

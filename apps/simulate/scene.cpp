@@ -56,7 +56,8 @@ InstanceView enter_instance(const EmbreeScene& part, const Pose& camera_from_obj
     PixelBox silhouette{box.last_u, box.last_v, box.first_u, box.first_v};
     for (std::size_t i = 0; i < hits.size(); ++i) {
         const int u = grid.image_u(hits.pixels[i]), v = grid.image_v(hits.pixels[i]);
-        silhouette = widened(silhouette, Eigen::Vector2d(u, v));
+        silhouette = {std::min(silhouette.first_u, u), std::min(silhouette.first_v, v),
+                      std::max(silhouette.last_u, u + 1), std::max(silhouette.last_v, v + 1)};
         if (u < 0 || v < 0 || u >= camera.width || v >= camera.height) continue;
         const std::size_t pixel = static_cast<std::size_t>(v) * camera.width + u;
         instance.silhouette.value[pixel] = 255;
@@ -68,6 +69,31 @@ InstanceView enter_instance(const EmbreeScene& part, const Pose& camera_from_obj
                                          silhouette.last_v - silhouette.first_v};
     }
     return instance;
+}
+
+// A plane needs no tree: in closed form it takes a tenth of the time, and the table is in every pixel.
+void enter_table(const Table& table, const Pose& camera_from_ground, const PinholeCamera& camera, int object,
+                 RenderedImage& image) {
+    const Pose ground_from_camera = camera_from_ground.inverse();
+    const Eigen::Matrix3d rotation = ground_from_camera.rotation_matrix();
+    const Eigen::Vector3d eye = ground_from_camera.translation;
+    const Eigen::Vector3f up_in_camera = rotation.row(2).transpose().cast<float>();
+    const Eigen::Vector3f normal = eye.z() < 0.0 ? Eigen::Vector3f(-up_in_camera) : up_in_camera;
+    for (int v = 0; v < camera.height; ++v) {
+        for (int u = 0; u < camera.width; ++u) {
+            const std::size_t pixel = static_cast<std::size_t>(v) * camera.width + u;
+            const Eigen::Vector3d direction = rotation * camera.ray(u, v);
+            const double depth = -eye.z() / direction.z();
+            if (!(depth > 0.0) || !std::isfinite(depth)) continue;
+            const float nearest = image.depth.depth_m[pixel];
+            if (nearest > 0.0F && static_cast<float>(depth) >= nearest) continue;
+            const Eigen::Vector2d place = (eye + depth * direction).head<2>();
+            if (place.cwiseAbs().maxCoeff() > table.half_side_m) continue;
+            image.depth.depth_m[pixel] = static_cast<float>(depth);
+            image.object[pixel] = object;
+            image.normals_in_camera[pixel] = normal;
+        }
+    }
 }
 
 void enter_thing(const EmbreeScene& thing, const Pose& camera_from_thing, const PinholeCamera& camera, int object,
@@ -111,7 +137,8 @@ PixelBox silhouette_canvas(const ModelExtent& extent, const Pose& camera_from_ob
     return box;
 }
 
-Scene::Scene(const Mesh& part, const World& world) : part_(part), scene_from_copies_(world.copies) {
+Scene::Scene(const Mesh& part, const World& world)
+    : part_(part), scene_from_copies_(world.copies), table_(world.table) {
     if (world.other) {
         other_.emplace(world.other->mesh);
         scene_from_other_ = world.other->scene_from_object;
@@ -131,6 +158,7 @@ RenderedFrame Scene::render(const Pose& camera_from_object, const Pose& camera_f
     add(part_, camera_from_object);
     for (const Pose& scene_from_copy : scene_from_copies_) add(part_, camera_from_scene * scene_from_copy);
     if (other_) add(*other_, camera_from_scene * scene_from_other_);
+    if (table_) enter_table(*table_, camera_from_scene * table_->scene_from_ground, camera, object++, frame.image);
     if (surroundings_) enter_thing(*surroundings_, camera_from_scene, camera, object++, frame.image);
     if (gripper_) enter_thing(*gripper_, Pose::identity(), camera, object++, frame.image);
     for (std::size_t i = 0; i < frame.instances.size(); ++i) {

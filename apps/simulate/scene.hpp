@@ -15,7 +15,7 @@
 
 namespace nearpose::simulate {
 
-inline constexpr int kPartIndex = 0;  // in RenderedImage::object; other instances, surroundings and gripper follow
+inline constexpr int kPartIndex = 0;  // in RenderedImage::object; other instances, table and things follow
 
 // A part in an image. The truth lacks measured_pixels and object_id, which the sensor and the data set decide.
 struct InstanceView {
@@ -42,6 +42,7 @@ class Scene {
   private:
     EmbreeScene part_;
     std::vector<Pose> scene_from_copies_;
+    std::optional<Table> table_;
     std::optional<EmbreeScene> other_, surroundings_, gripper_;
     Pose scene_from_other_;
 };

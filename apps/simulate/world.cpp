@@ -10,21 +10,12 @@ namespace {
 
 // Half the side of the table: far enough for a whole view of the part to show the table around it.
 double table_half_side_m(const Part& part, const TaskPath& path) {
-    double half_m = 1.5 * part.extent.diameter_m();
+    const double half_m = 1.5 * part.extent.diameter_m();
     const Pose scene_from_camera = path.camera_from_scene.front().inverse();
     const Pose first = scene_from_camera * path.camera_from_object.front();
     const Eigen::Vector3d centre = part.extent.centre_in_object();
     // A part on a conveyor needs as much belt as it goes.
     return half_m + (first * centre - centre).norm();
-}
-
-Mesh table_in_ground(double half_m) {
-    Mesh table;
-    for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
-        table.vertices_in_object.emplace_back(Eigen::Vector3d(x * half_m, y * half_m, 0.0).cast<float>());
-    }
-    table.triangles = {{0, 1, 2}, {0, 2, 3}};
-    return table;
 }
 
 // Four walls that stand close around all copies.
@@ -85,9 +76,7 @@ World world_of(Scenario scenario, const Mesh& mesh, const Part& part, const Task
             append(world.surroundings_in_scene, walls_in_ground(part, ground_from_copies), path.scene_from_ground);
         }
     }
-    if (options.with_table) {
-        append(world.surroundings_in_scene, table_in_ground(table_half_m), path.scene_from_ground);
-    }
+    if (options.with_table) world.table = Table{path.scene_from_ground, table_half_m};
     if (scenario == Scenario::kClutter) add_clutter(world, mesh, part, path, camera, seed, options);
     return world;
 }

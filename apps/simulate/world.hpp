@@ -17,10 +17,17 @@ struct OtherPart {
     Pose scene_from_object;
 };
 
+// A square of a plane: the ground frame's z = 0 around its origin.
+struct Table {
+    Pose scene_from_ground;
+    double half_side_m = 0.0;
+};
+
 struct World {
     std::vector<Pose> copies;  // scene_from_object of further copies of the part
     std::optional<OtherPart> other;
-    Mesh surroundings_in_scene;  // table, boxes, walls; empty: nothing
+    std::optional<Table> table;
+    Mesh surroundings_in_scene;  // boxes, walls; empty: nothing
     Mesh gripper_in_camera;      // moves with the camera; empty: none
 };
 

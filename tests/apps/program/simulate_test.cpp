@@ -1,0 +1,81 @@
+// simulate, run as a user would.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "apps/data_set/camera_json.hpp"
+#include "apps/data_set/json_file.hpp"
+#include "tests/apps/program/tiny_scene.hpp"
+
+namespace nearpose::program_tests {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path fresh_folder(const std::string& name) {
+    const fs::path folder = fs::path(testing::TempDir()) / "nearpose_simulate_program" / name;
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+    return folder;
+}
+
+TEST(SimulateCommand, BadCombinationsAreBadUse) {
+    const fs::path folder = fresh_folder("bad");
+    const std::string out = " --out " + (folder / "set").string();
+    struct Case {
+        const char *options, *told;
+    };
+    for (const Case& bad :
+         {Case{"--scenario piston --occlusion 0.3", "--scenario clutter"},
+          Case{"--scenario baseline --conveyor-mm 3", "--scenario conveyor"},
+          Case{"--conveyor-deg 0.5", "--scenario conveyor"}, Case{"--trajectory /dev/null", "--trajectory"},
+          Case{"--scenario handhold", "handheld"}, Case{"--part gearbox", "flange"}, Case{"--unit mm", "--model"},
+          Case{"--drop-frames 1", "--drop-frames"}, Case{"--scenario clutter --occlusion 0.9", "--occlusion"}}) {
+        const Outcome outcome = run_nearpose("simulate " + std::string(bad.options) + out);
+        EXPECT_EQ(outcome.exit_code, 2) << bad.options << outcome.err;
+        EXPECT_NE(outcome.err.find(bad.told), std::string::npos) << outcome.err;
+    }
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 0);
+}
+
+TEST(SimulateCommand, SensorSetsTheCameraUnlessOneIsNamed) {
+    const fs::path folder = fresh_folder("sensor");
+    const std::string command = "simulate --quiet --frames 1 --noise-scale 0 --part bracket --sensor d435 --out ";
+    const Outcome outcome = run_nearpose(command + (folder / "own").string());
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const data_set::CameraFile own = data_set::read_camera_json(folder / "own/camera.json");
+    EXPECT_EQ(own.depth_scale_mm, 1.0);
+    EXPECT_NE(own.camera.fx, 600.0);
+    data_set::write_camera_json(folder / "camera.json", {96, 72, 90.0, 90.0, 47.5, 35.5}, 0.5);
+    const Outcome named =
+        run_nearpose(command + (folder / "named").string() + " --camera " + (folder / "camera.json").string());
+    ASSERT_EQ(named.exit_code, 0) << named.err;
+    EXPECT_EQ(data_set::read_camera_json(folder / "named/camera.json").camera.width, 96);
+    EXPECT_EQ(data_set::read_camera_json(folder / "named/camera.json").depth_scale_mm, 0.5);
+    const data_set::JsonFile truth(folder / "named/test/000001/scene_gt.json");
+    EXPECT_EQ(truth.root().at("0").elements().at(0).at("obj_id").integer(), 3);
+}
+
+TEST(SimulateCommand, TakesACameraPathOfFourDigits) {
+    const fs::path folder = fresh_folder("hand");
+    data_set::write_camera_json(folder / "camera.json", {96, 72, 90.0, 90.0, 47.5, 35.5}, 0.1);
+    std::string rows = "# timestamp tx ty tz qx qy qz qw\n";
+    for (int i = 0; i < 5; ++i)
+        rows += std::to_string(i) + ".0 1.3405 0.6266 1.657" + std::to_string(i) + " 0.6574 0.6126 -0.2949 -0.3248\n";
+    write_text(folder / "hand.tum", rows);
+    const std::string command = "simulate --quiet --scenario handheld --fps 2 --camera " +
+                                (folder / "camera.json").string() + " --out " + (folder / "set").string() +
+                                " --trajectory " + (folder / "hand.tum").string();
+    const Outcome good = run_nearpose(command + " --frames 4");
+    EXPECT_EQ(good.exit_code, 0) << good.err;
+    const Outcome too_long = run_nearpose(command + " --force --frames 40");
+    EXPECT_EQ(too_long.exit_code, 1);
+    EXPECT_NE(too_long.err.find("the trajectory lasts 4 s"), std::string::npos) << too_long.err;
+    write_text(folder / "hand.tum", rows + "9 9\n");
+    const Outcome broken = run_nearpose(command + " --force --frames 4");
+    EXPECT_EQ(broken.exit_code, 1);
+    EXPECT_NE(broken.err.find("hand.tum: line 7"), std::string::npos) << broken.err;
+}
+
+}  // namespace
+}  // namespace nearpose::program_tests
