@@ -12,7 +12,7 @@ namespace {
 
 using data_set::StampedPose;
 
-constexpr double kMaxDeparture = 0.3;  // of the camera from its mean place, in mean distances from the part
+constexpr double kMaxDeparture = 0.2;  // of the camera from its mean place, in mean distances from the part
 
 // Where the camera is on average: over the table, looking at the part's centre.
 struct MeanView {
