@@ -12,11 +12,13 @@
 #include "apps/data_set/file_io.hpp"
 #include "apps/data_set/number_text.hpp"
 #include "apps/data_set/result_csv.hpp"
+#include "apps/evaluation/run_summary.hpp"
 #include "apps/pictures/error_plot.hpp"
-#include "apps/pose_error.hpp"
 
 namespace nearpose::program {
 namespace {
+
+using evaluation::FrameErrors;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
@@ -61,30 +63,30 @@ std::map<int, data_set::PoseRow> rows_of_object(const EvaluateOptions& options) 
     return best;
 }
 
-std::vector<FrameError> frame_errors(const EvaluateOptions& options) {
+std::vector<FrameErrors> errors_of(const EvaluateOptions& options) {
     const data_set::ModelInfo model = data_set::read_model_info(options.models, options.object);
     const std::map<int, Pose> truth = data_set::read_ground_truth(options.scene, options.object);
     const std::map<int, data_set::PoseRow> rows = rows_of_object(options);
-    std::vector<FrameError> frames;
+    std::vector<FrameErrors> frames;
     for (const auto& [frame_id, camera_from_object] : truth) {
         if (frame_id < options.first.value_or(frame_id) || frame_id > options.last.value_or(frame_id)) continue;
         const auto row = rows.find(frame_id);
-        frames.push_back({frame_id, std::nullopt});
+        frames.emplace_back().frame_id = frame_id;
         if (row != rows.end()) {
-            frames.back().error = pose_error(row->second.camera_from_object, camera_from_object, model);
+            frames.back().errors = evaluation::pose_error(row->second.camera_from_object, camera_from_object, model);
         }
     }
     if (frames.empty()) throw std::runtime_error(options.scene.string() + ": no frame between --first and --last");
     return frames;
 }
 
-std::string table_of(const std::vector<FrameError>& frames) {
+std::string short_table(const std::vector<FrameErrors>& frames) {
     std::string table = "im_id,translation_error_mm,rotation_error_deg\n";
-    for (const FrameError& frame : frames) {
+    for (const FrameErrors& frame : frames) {
         table += std::to_string(frame.frame_id) + ",";
-        if (frame.error) table += data_set::format_fixed(1e3 * frame.error->translation_m, 4);
+        if (frame.errors) table += data_set::format_fixed(1e3 * frame.errors->translation_m, 4);
         table += ",";
-        if (frame.error) table += data_set::format_fixed(kDegrees * frame.error->rotation_rad, 4);
+        if (frame.errors) table += data_set::format_fixed(kDegrees * frame.errors->rotation_rad, 4);
         table += "\n";
     }
     return table;
@@ -95,7 +97,7 @@ std::string padded(const std::string& text, std::size_t width) {
 }
 
 std::string statistics_row(const std::string& label, const std::vector<double>& values) {
-    const ErrorStatistics statistics = statistics_of(values);
+    const evaluation::Statistics statistics = evaluation::statistics_of(values);
     std::string row = label + std::string(18 - label.size(), ' ');
     for (const double value : {statistics.mean, statistics.median, statistics.percentile_95, statistics.max}) {
         row += padded(data_set::format_fixed(value, 3), 10);
@@ -103,28 +105,28 @@ std::string statistics_row(const std::string& label, const std::vector<double>& 
     return row + "\n";
 }
 
-std::string arrival_text(const EvaluateOptions& options, const std::vector<FrameError>& frames) {
-    const ErrorLimit limit{1e-3 * options.within_mm, options.within_deg / kDegrees};
+std::string arrival_text(const EvaluateOptions& options, const std::vector<FrameErrors>& frames) {
+    const evaluation::ErrorLimit limit{1e-3 * options.within_mm, options.within_deg / kDegrees};
     const std::string name = "within " + data_set::format_number(options.within_mm) + " mm and " +
                              data_set::format_number(options.within_deg) + " deg: ";
-    const std::optional<int> first = arrives_at(frames, limit);
-    const std::optional<int> holds = holds_from(frames, limit);
-    if (!first) return name + "never\n";
-    std::string text = name + "first in frame " + std::to_string(*first);
-    if (!holds) return text + ", but not in the last frame\n";
-    return text + (*holds == *first ? ", and in every frame from there on\n"
-                                    : ", for good from frame " + std::to_string(*holds) + " on\n");
+    const evaluation::Arrival arrival = evaluation::arrival_of(frames, limit);
+    const auto frame_of = [&](int index) { return std::to_string(frames[static_cast<std::size_t>(index)].frame_id); };
+    if (!arrival.first_index) return name + "never\n";
+    std::string text = name + "first in frame " + frame_of(*arrival.first_index);
+    if (!arrival.holds_from) return text + ", but not in the last frame\n";
+    return text + (arrival.stays() ? ", and in every frame from there on\n"
+                                   : ", for good from frame " + frame_of(*arrival.holds_from) + " on\n");
 }
 
-std::string summary_of(const EvaluateOptions& options, const std::vector<FrameError>& frames) {
+std::string summary_of(const EvaluateOptions& options, const std::vector<FrameErrors>& frames) {
     std::vector<double> translations_mm, rotations_deg;
     std::size_t missing = 0;
     const std::size_t burn_in = std::min(frames.size(), static_cast<std::size_t>(options.burn_in));
     for (std::size_t i = 0; i < frames.size(); ++i) {
-        if (!frames[i].error) ++missing;
-        if (i < burn_in || !frames[i].error) continue;
-        translations_mm.push_back(1e3 * frames[i].error->translation_m);
-        rotations_deg.push_back(kDegrees * frames[i].error->rotation_rad);
+        if (!frames[i].errors) ++missing;
+        if (i < burn_in || !frames[i].errors) continue;
+        translations_mm.push_back(1e3 * frames[i].errors->translation_m);
+        rotations_deg.push_back(kDegrees * frames[i].errors->rotation_rad);
     }
     std::string text = "object " + std::to_string(options.object) + " in " + options.scene.string() + ": " +
                        std::to_string(frames.size()) + " frames, " + std::to_string(missing) + " without a pose\n";
@@ -144,22 +146,22 @@ std::string summary_of(const EvaluateOptions& options, const std::vector<FrameEr
 }
 
 int evaluate(const EvaluateOptions& options, const SharedOptions&) {
-    const std::vector<FrameError> frames = frame_errors(options);
+    const std::vector<FrameErrors> frames = errors_of(options);
     if (!options.out.empty() && options.out != "-") {
-        data_set::write_file_atomically(options.out, table_of(frames));
+        data_set::write_file_atomically(options.out, short_table(frames));
     }
     if (!options.plot.empty()) {
         std::vector<pictures::ErrorPoint> points;
-        for (const FrameError& frame : frames) {
+        for (const FrameErrors& frame : frames) {
             pictures::ErrorPoint point;
             point.frame_id = frame.frame_id;
-            if (frame.error) point.translation_mm = 1e3 * frame.error->translation_m;
-            if (frame.error) point.rotation_deg = kDegrees * frame.error->rotation_rad;
+            if (frame.errors) point.translation_mm = 1e3 * frame.errors->translation_m;
+            if (frame.errors) point.rotation_deg = kDegrees * frame.errors->rotation_rad;
             points.push_back(point);
         }
         pictures::write_error_plot(options.plot, "Pose error, object " + std::to_string(options.object), points);
     }
-    print(options.out == "-" ? table_of(frames) : summary_of(options, frames));
+    print(options.out == "-" ? short_table(frames) : summary_of(options, frames));
     return kSuccess;
 }
 

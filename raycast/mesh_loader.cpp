@@ -153,6 +153,20 @@ LoadedMesh load_mesh(const std::filesystem::path& path, LengthUnit unit, const M
     return finish(std::move(raw), path.string(), unit, limits, repair);
 }
 
+std::vector<Eigen::Vector3d> load_vertices(const std::filesystem::path& path, LengthUnit unit,
+                                           const MeshLimits& limits) {
+    MeshRepair repair;
+    const Mesh raw = read_by_extension(path, limits, repair);
+    if (raw.vertices_in_object.empty()) throw std::runtime_error(path.string() + ": has no vertices");
+    std::vector<Eigen::Vector3d> vertices;
+    vertices.reserve(raw.vertices_in_object.size());
+    for (const Eigen::Vector3f& vertex : raw.vertices_in_object) {
+        if (!vertex.allFinite()) throw std::runtime_error(path.string() + ": a vertex is not finite");
+        vertices.emplace_back(vertex.cast<double>() * metres_per(unit));
+    }
+    return vertices;
+}
+
 LoadedMesh load_mesh_from_bytes(std::string_view ply, const std::string& source, LengthUnit unit,
                                 const MeshLimits& limits) {
     if (ply.size() > limits.max_file_bytes) {

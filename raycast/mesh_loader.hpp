@@ -54,6 +54,11 @@ LoadedMesh load_mesh(const std::filesystem::path& path, LengthUnit unit, const M
 LoadedMesh load_mesh_from_bytes(std::string_view ply, const std::string& source, LengthUnit unit,
                                 const MeshLimits& limits = {});
 
+// The vertices as the file lists them, also equal ones and those of no triangle: what error measures are defined over.
+// [m], with the digits of the file's own unit. Throws std::runtime_error where one is not finite or there is none.
+std::vector<Eigen::Vector3d> load_vertices(const std::filesystem::path& path, LengthUnit unit,
+                                           const MeshLimits& limits = {});
+
 // Writes a binary little-endian PLY of the types float, uchar and int alone (what other tools' simplest readers take):
 // vertices, normals if there are any, and triangles. The file appears whole or not at all. Throws std::runtime_error.
 void save_ply(const Mesh& mesh, const std::filesystem::path& path, LengthUnit unit);

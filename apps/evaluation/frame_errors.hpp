@@ -7,18 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "apps/data_set/bop_models.hpp"
+#include "apps/evaluation/model_shape.hpp"
+#include "core/camera.hpp"
 #include "core/pose.hpp"
-#include "raycast/mesh.hpp"
 
 namespace nearpose::evaluation {
-
-// The model as error measures see it.
-struct ModelShape {
-    data_set::ModelInfo info;
-    std::vector<Eigen::Vector3d> vertices_in_object_m;  // of models_eval
-};
-ModelShape shape_of(const data_set::ModelInfo& info, const Mesh& mesh);
 
 // What the image tells of how much of the part is to be seen.
 struct Visibility {
@@ -26,7 +19,8 @@ struct Visibility {
     double visible_volume_m3 = 0.0;  // of the ellipsoid of the visible points' principal axes (the paper's volume)
     std::optional<double> visible_fraction;  // of the silhouette on the enlarged canvas, in 0..1
 };
-// From the measured points on the part [m], camera frame.
+// From the measured points on the part [m], camera frame. The ellipsoid's semi-axes are two standard deviations of the
+// points along their principal axes: 4/3 pi 8 sqrt(l1 l2 l3) with the eigenvalues of their covariance.
 Visibility visibility_of(const std::vector<Eigen::Vector3f>& visible_points_in_camera);
 
 struct TrueFrame {
@@ -49,13 +43,22 @@ struct PoseErrors {
     Eigen::Vector3d rotation_in_camera_rad = Eigen::Vector3d::Zero();   // rotation vector of estimate * truth^-1
     double translation_m = 0.0;                                         // norms of both
     double rotation_rad = 0.0;
-    double add_m = 0.0;    // mean distance of the model's vertices
+    double add_m = 0.0;    // mean distance of the model's vertices; knows no symmetries, as in bop_toolkit
     double add_s_m = 0.0;  // mean distance from each vertex in the true pose to the nearest in the estimated one
     double mssd_m = 0.0;   // maximum symmetry-aware surface distance
     double mspd_px = 0.0;  // maximum symmetry-aware projection distance
     // Squared Mahalanobis distance of the truth from the estimate under its covariance (6 degrees of freedom).
     std::optional<double> mahalanobis_squared;
+    std::optional<double> mahalanobis_rotation_squared, mahalanobis_translation_squared;  // of either part, 3 degrees
 };
+
+// A symmetric part looks the same in several poses: of those of `truth` the one in which the corners of the model's box
+// are nearest to where the estimate has them (their largest distance is least). Continuous symmetries are searched to
+// the bottom, not only at samples.
+Pose nearest_equivalent(const Pose& estimate, const Pose& truth, const data_set::ModelInfo& model);
+
+// Errors of translation and rotation alone; the others are left 0.
+PoseErrors pose_error(const Pose& estimate, const Pose& truth, const data_set::ModelInfo& model);
 
 struct FrameErrors {
     int frame_id = 0;

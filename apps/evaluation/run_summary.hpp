@@ -13,8 +13,10 @@ struct Statistics {
     std::size_t count = 0;
     double mean = 0.0, standard_deviation = 0.0, median = 0.0, percentile_95 = 0.0, max = 0.0;
 };
-// All 0 for no values. Percentiles interpolate between the values of neighbouring ranks.
+// All 0 for no values. The deviation is that of a sample (n - 1).
 Statistics statistics_of(std::vector<double> values);
+// Of values in ascending order, at least one; interpolates between those of neighbouring ranks.
+double percentile(const std::vector<double>& ascending, double fraction);
 
 struct ErrorLimit {
     double translation_m = 0.010;
@@ -27,7 +29,12 @@ struct Arrival {
     std::optional<int> holds_from;   // nothing: the last frame is not within it
     bool stays() const { return first_index && holds_from && *first_index == *holds_from; }
 };
+bool within(const FrameErrors& frame, const ErrorLimit& limit);  // false without a pose
 Arrival arrival_of(const std::vector<FrameErrors>& frames, const ErrorLimit& limit);
+
+// Squared distances that bound the 90 % region of a normal distribution: quantiles of chi-square.
+inline constexpr double kChiSquare90Of6 = 10.644640675668420;
+inline constexpr double kChiSquare90Of3 = 6.2513886311703235;
 
 struct SummaryOptions {
     int burn_in = 15;                               // frames at the beginning that the error statistics leave out
@@ -48,6 +55,8 @@ struct RunSummary {
     Arrival coarse, fine;
     // Share of the frames with a covariance in which the truth lies inside its 90 % region; nothing: none has one.
     std::optional<double> inside_90;
+    std::optional<double> inside_90_rotation, inside_90_translation;  // the same of either part
+    int frames_with_covariance = 0;                                   // that these are shares of
     Statistics time_ms;
 };
 RunSummary summarise(const std::vector<FrameErrors>& frames, double model_diameter_m, const SummaryOptions& options);
@@ -56,6 +65,7 @@ RunSummary summarise(const std::vector<FrameErrors>& frames, double model_diamet
 struct Interval {
     double value = 0.0, low = 0.0, high = 0.0;
 };
+// Throw std::invalid_argument for no trial and no run.
 // Wilson's interval of `successes` out of `trials` (at least one).
 Interval proportion(int successes, int trials);
 // Mean over independent runs: percentile bootstrap of 2000 resamples of the runs, from a fixed seed.

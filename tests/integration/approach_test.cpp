@@ -43,7 +43,7 @@ TEST_F(Approach, DefaultMethodArrivesByFrameFifteenAndStays) {
         const std::filesystem::path scene = simulate(seed, 60);
         const auto errors = test::run_scene(scene, folder_ / "models",
                                             {"default", "raycast", true, 200, static_cast<std::uint64_t>(seed)});
-        const program::PoseError worst = test::worst_after(errors, 15);
+        const evaluation::PoseErrors worst = test::worst_after(errors, 15);
         EXPECT_LT(worst.translation_m, 0.010) << "seed " << seed;
         EXPECT_LT(worst.rotation_rad, 5.0 * M_PI / 180.0) << "seed " << seed;
         std::filesystem::remove_all(folder_);
@@ -53,7 +53,7 @@ TEST_F(Approach, DefaultMethodArrivesByFrameFifteenAndStays) {
 TEST_F(Approach, EveryViewGeneratorRunsInTheFilter) {
     const auto scene = simulate(1, 12);
     for (const char* views : {"raycast", "raster"}) {
-        const program::PoseError worst =
+        const evaluation::PoseErrors worst =
             test::worst_after(test::run_scene(scene, folder_ / "models", {"default", views, true, 100, 1}), 8);
         EXPECT_LT(worst.translation_m, 0.010) << views;
     }
@@ -65,8 +65,8 @@ TEST_F(Approach, PaperMethodRuns) {
     const std::filesystem::path scene = simulate(1, 6);
     const auto errors = test::run_scene(scene, folder_ / "models", {"paper", "raster", true, 100, 1});
     ASSERT_EQ(errors.size(), 6U);
-    for (const program::FrameError& frame : errors)
-        EXPECT_TRUE(frame.error && std::isfinite(frame.error->translation_m));
+    for (const evaluation::FrameErrors& frame : errors)
+        EXPECT_TRUE(frame.errors && std::isfinite(frame.errors->translation_m));
 }
 
 }  // namespace

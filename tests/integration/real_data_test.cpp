@@ -14,7 +14,7 @@ constexpr double kDegree = M_PI / 180.0;
 
 // Worst errors from frame `first` on; skips where the set is absent.
 #define WORST_OF(set, first, run, worst)                                                                     \
-    program::PoseError worst;                                                                                \
+    evaluation::PoseErrors worst;                                                                            \
     {                                                                                                        \
         const std::filesystem::path folder = std::filesystem::path("../shared/data") / (set);                \
         if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";                     \

@@ -13,8 +13,8 @@
 
 namespace nearpose::test {
 
-std::vector<program::FrameError> run_scene(const std::filesystem::path& scene, const std::filesystem::path& models,
-                                           const SceneRun& run) {
+std::vector<evaluation::FrameErrors> run_scene(const std::filesystem::path& scene, const std::filesystem::path& models,
+                                               const SceneRun& run) {
     constexpr int kObject = 1;
     const Mesh mesh = load_mesh(data_set::model_path(models, kObject), LengthUnit::kMillimetre).mesh;
     const data_set::ModelInfo info = data_set::read_model_info(models, kObject);
@@ -25,7 +25,7 @@ std::vector<program::FrameError> run_scene(const std::filesystem::path& scene, c
     options.num_particles = run.particles;
     options.seed = run.seed;
     PoseEstimator estimator(program::make_view_generator(run.views, mesh), program::make_solver(run.method), options);
-    std::vector<program::FrameError> errors;
+    std::vector<evaluation::FrameErrors> errors;
     std::optional<Pose> camera_from_world_before;
     for (std::size_t k = 0; k < source->frames().size(); ++k) {
         const program::FrameInfo& frame = source->frames()[k];
@@ -35,20 +35,20 @@ std::vector<program::FrameError> run_scene(const std::filesystem::path& scene, c
         camera_from_world_before = frame.camera_from_world;
         const Observation observation = program::observe_frame(frame, source->load(k));
         const UpdateResult result = estimator.update(observation, now_from_before);
-        program::FrameError error{frame.id, std::nullopt};
+        evaluation::FrameErrors& error = errors.emplace_back();
+        error.frame_id = frame.id;
         if (result.status != UpdateStatus::kNoPose && truth.count(frame.id) != 0)
-            error.error = program::pose_error(result.camera_from_object, truth.at(frame.id), info);
-        errors.push_back(error);
+            error.errors = evaluation::pose_error(result.camera_from_object, truth.at(frame.id), info);
     }
     return errors;
 }
 
-program::PoseError worst_after(const std::vector<program::FrameError>& frames, std::size_t first) {
+evaluation::PoseErrors worst_after(const std::vector<evaluation::FrameErrors>& frames, std::size_t first) {
     constexpr double kLost = std::numeric_limits<double>::infinity();
-    program::PoseError worst;
+    evaluation::PoseErrors worst;
     for (std::size_t k = first; k < frames.size(); ++k) {
-        worst.translation_m = std::max(worst.translation_m, frames[k].error ? frames[k].error->translation_m : kLost);
-        worst.rotation_rad = std::max(worst.rotation_rad, frames[k].error ? frames[k].error->rotation_rad : kLost);
+        worst.translation_m = std::max(worst.translation_m, frames[k].errors ? frames[k].errors->translation_m : kLost);
+        worst.rotation_rad = std::max(worst.rotation_rad, frames[k].errors ? frames[k].errors->rotation_rad : kLost);
     }
     return worst;
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/pose_error.hpp"
+#include "apps/evaluation/frame_errors.hpp"
 
 namespace nearpose::test {
 
@@ -18,10 +18,10 @@ struct SceneRun {
 };
 
 // One entry a frame with ground truth. Throws where anything cannot be read.
-std::vector<program::FrameError> run_scene(const std::filesystem::path& scene, const std::filesystem::path& models,
-                                           const SceneRun& run);
+std::vector<evaluation::FrameErrors> run_scene(const std::filesystem::path& scene, const std::filesystem::path& models,
+                                               const SceneRun& run);
 
 // From frame `first` on: the largest errors, infinite where a frame has no pose.
-program::PoseError worst_after(const std::vector<program::FrameError>& frames, std::size_t first);
+evaluation::PoseErrors worst_after(const std::vector<evaluation::FrameErrors>& frames, std::size_t first);
 
 }  // namespace nearpose::test

@@ -1,0 +1,162 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "apps/data_set/file_io.hpp"
+#include "apps/data_set/number_text.hpp"
+#include "apps/data_set/text_split.hpp"
+#include "apps/evaluation/frame_errors.hpp"
+
+namespace nearpose::evaluation {
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr int kDecimals = 8;
+constexpr std::uintmax_t kMaxTableBytes = std::uintmax_t{1} << 30;
+
+// One column: where its value lies, and how many of its units are one of ours. A null place: this frame has none.
+struct Column {
+    const char* name;
+    double units;
+    bool of_pose;  // known where there is a pose
+    double* (*place)(FrameErrors& frame, bool make);
+};
+
+// Where the value of an optional is; with `make` it is given one first.
+template <typename Value>
+Value* inside(std::optional<Value>& value, bool make) {
+    if (make && !value) value.emplace();
+    return value ? &*value : nullptr;
+}
+
+#define OF_POSE(expression) [](FrameErrors& f, bool) -> double* { return f.errors ? &(f.errors->expression) : nullptr; }
+#define OF_COVARIANCE(member) \
+    [](FrameErrors& f, bool make) -> double* { return f.errors ? inside(f.errors->member, make) : nullptr; }
+
+constexpr std::array kColumns = {
+    Column{"translation_error_mm", 1e3, true, OF_POSE(translation_m)},
+    Column{"rotation_error_deg", kDegrees, true, OF_POSE(rotation_rad)},
+    Column{"translation_x_mm", 1e3, true, OF_POSE(translation_in_camera_m.x())},
+    Column{"translation_y_mm", 1e3, true, OF_POSE(translation_in_camera_m.y())},
+    Column{"translation_z_mm", 1e3, true, OF_POSE(translation_in_camera_m.z())},
+    Column{"rotation_x_deg", kDegrees, true, OF_POSE(rotation_in_camera_rad.x())},
+    Column{"rotation_y_deg", kDegrees, true, OF_POSE(rotation_in_camera_rad.y())},
+    Column{"rotation_z_deg", kDegrees, true, OF_POSE(rotation_in_camera_rad.z())},
+    Column{"add_mm", 1e3, true, OF_POSE(add_m)},
+    Column{"add_s_mm", 1e3, true, OF_POSE(add_s_m)},
+    Column{"mssd_mm", 1e3, true, OF_POSE(mssd_m)},
+    Column{"mspd_px", 1.0, true, OF_POSE(mspd_px)},
+    Column{"mahalanobis_squared", 1.0, false, OF_COVARIANCE(mahalanobis_squared)},
+    Column{"mahalanobis_rotation_squared", 1.0, false, OF_COVARIANCE(mahalanobis_rotation_squared)},
+    Column{"mahalanobis_translation_squared", 1.0, false, OF_COVARIANCE(mahalanobis_translation_squared)},
+    Column{"score", 1.0, true, [](FrameErrors& f, bool) { return f.errors ? &f.score : nullptr; }},
+    Column{"time_ms", 1e3, false,
+           [](FrameErrors& f, bool make) { return make || f.time_s >= 0.0 ? &f.time_s : nullptr; }},
+    Column{"distance_mm", 1e3, false,
+           [](FrameErrors& f, bool make) {
+               Visibility* visibility = inside(f.visibility, make);
+               return visibility ? &visibility->distance_m : nullptr;
+           }},
+    Column{"visible_volume_mm3", 1e9, false,
+           [](FrameErrors& f, bool) { return f.visibility ? &f.visibility->visible_volume_m3 : nullptr; }},
+    Column{"visible_fraction", 1.0, false,
+           [](FrameErrors& f, bool make) {
+               return f.visibility ? inside(f.visibility->visible_fraction, make) : nullptr;
+           }},
+};
+
+#undef OF_POSE
+#undef OF_COVARIANCE
+
+std::string header() {
+    std::string text = "im_id,predicted";
+    for (const Column& column : kColumns) text += std::string(",") + column.name;
+    return text;
+}
+
+// A cell of the file, with what is needed to say where it is.
+struct Cell {
+    const std::filesystem::path& path;
+    std::size_t line;
+    std::string column;
+    std::string_view text;
+
+    std::runtime_error error(const std::string& problem) const {
+        return std::runtime_error(path.string() + ": line " + std::to_string(line) + ": " + column + " " + problem);
+    }
+    int integer() const {
+        const std::optional<std::int64_t> value = data_set::parse_integer(text);
+        if (!value || *value < 0 || *value > std::numeric_limits<int>::max()) {
+            throw error("is \"" + std::string(text) + "\", but must be a whole number");
+        }
+        return static_cast<int>(*value);
+    }
+    double number() const {
+        const std::optional<double> value = data_set::parse_number(text);
+        if (!value || std::isnan(*value)) throw error("is \"" + std::string(text) + "\", but must be a number");
+        return *value;
+    }
+};
+
+FrameErrors frame_of(const std::filesystem::path& path, std::size_t line, std::string_view text) {
+    const std::vector<std::string_view> fields = data_set::split(text, ',');
+    if (fields.size() != kColumns.size() + 2) {
+        throw std::runtime_error(path.string() + ": line " + std::to_string(line) + ": has " +
+                                 std::to_string(fields.size()) + " columns instead of " +
+                                 std::to_string(kColumns.size() + 2));
+    }
+    FrameErrors frame;
+    frame.frame_id = Cell{path, line, "im_id", fields[0]}.integer();
+    const Cell predicted{path, line, "predicted", fields[1]};
+    if (predicted.text != "0" && predicted.text != "1") throw predicted.error("must be 0 or 1");
+    frame.predicted = predicted.text == "1";
+    if (!fields[2].empty()) frame.errors.emplace();
+    for (std::size_t i = 0; i < kColumns.size(); ++i) {
+        const Column& column = kColumns[i];
+        const Cell cell{path, line, column.name, fields[i + 2]};
+        if (cell.text.empty()) {
+            if (column.of_pose && frame.errors) throw cell.error("is empty, but the frame has a pose");
+            continue;
+        }
+        double* value = column.place(frame, true);
+        if (value == nullptr) throw cell.error("is given, but not what it belongs to");
+        *value = cell.number() / column.units;
+    }
+    return frame;
+}
+
+}  // namespace
+
+std::string table_of(const std::vector<FrameErrors>& frames) {
+    std::string table = header() + "\n";
+    for (FrameErrors frame : frames) {
+        table += std::to_string(frame.frame_id) + (frame.predicted ? ",1" : ",0");
+        for (const Column& column : kColumns) {
+            const double* value = column.place(frame, false);
+            table += ",";
+            if (value != nullptr) table += data_set::format_fixed(column.units * *value, kDecimals);
+        }
+        table += "\n";
+    }
+    return table;
+}
+
+std::vector<FrameErrors> read_table(const std::filesystem::path& csv) {
+    const std::string text = data_set::read_whole_file(csv, kMaxTableBytes);
+    std::vector<FrameErrors> frames;
+    std::size_t number = 0;
+    for (const std::string_view line : data_set::lines(text)) {
+        if (++number > 1) {
+            frames.push_back(frame_of(csv, number, line));
+        } else if (line != header()) {
+            throw std::runtime_error(csv.string() + ": line 1: is not the header of a table of frames");
+        }
+    }
+    if (number == 0) throw std::runtime_error(csv.string() + ": is empty");
+    return frames;
+}
+
+}  // namespace nearpose::evaluation

@@ -1,0 +1,29 @@
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <numbers>
+
+#include "apps/evaluation/frame_errors.hpp"
+
+namespace nearpose::evaluation {
+
+Visibility visibility_of(const std::vector<Eigen::Vector3f>& visible_points_in_camera) {
+    Visibility visibility;
+    if (visible_points_in_camera.empty()) return visibility;
+    const auto count = static_cast<double>(visible_points_in_camera.size());
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3f& point : visible_points_in_camera) mean += point.cast<double>() / count;
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    for (const Eigen::Vector3f& point : visible_points_in_camera) {
+        const Eigen::Vector3d offset = point.cast<double>() - mean;
+        covariance += offset * offset.transpose() / count;
+    }
+    visibility.distance_m = mean.norm();
+    // Two standard deviations hold nearly all of a surface's points. Rounding makes flat clouds slightly negative.
+    constexpr double kDeviations = 2.0;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance, Eigen::EigenvaluesOnly);
+    const Eigen::Vector3d semi_axes_m = kDeviations * axes.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+    visibility.visible_volume_m3 = 4.0 / 3.0 * std::numbers::pi * semi_axes_m.prod();
+    return visibility;
+}
+
+}  // namespace nearpose::evaluation
