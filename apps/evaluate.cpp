@@ -1,18 +1,17 @@
 #include "apps/evaluate.hpp"
 
 #include <CLI/CLI.hpp>
-#include <cmath>
-#include <map>
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <numbers>
 
 #include "apps/console.hpp"
-#include "apps/data_set/bop_ground_truth.hpp"
-#include "apps/data_set/bop_models.hpp"
 #include "apps/data_set/file_io.hpp"
-#include "apps/data_set/number_text.hpp"
-#include "apps/data_set/result_csv.hpp"
-#include "apps/evaluation/run_summary.hpp"
+#include "apps/data_set/trajectory_tum.hpp"
+#include "apps/evaluation/error_curves.hpp"
+#include "apps/evaluation/estimates.hpp"
+#include "apps/evaluation/summary_text.hpp"
 #include "apps/pictures/error_plot.hpp"
 
 namespace nearpose::program {
@@ -23,145 +22,129 @@ using evaluation::FrameErrors;
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 struct EvaluateOptions {
-    std::filesystem::path scene, models, results, out, plot;
+    std::filesystem::path scene, models, results, log;
+    std::filesystem::path out, json, plot, curves, calibration, trajectories;
     int object = 1;
     std::optional<int> scene_id, first, last;
-    int burn_in = 10;
+    int burn_in = evaluation::SummaryOptions{}.burn_in;
     double within_mm = 10.0, within_deg = 5.0;
 };
 
-// The number that the scene's folder is called, or that of --scene-id.
-int scene_number(const EvaluateOptions& options) {
-    if (options.scene_id) return *options.scene_id;
-    std::filesystem::path folder = std::filesystem::absolute(options.scene).lexically_normal();
-    if (!folder.has_filename()) folder = folder.parent_path();
-    const auto number = data_set::parse_integer(folder.filename().string());
-    if (!number) throw BadUse(options.scene.string() + ": the folder's name is no number; give --scene-id");
-    return static_cast<int>(*number);
-}
-
-// Of several rows of one frame the one with the highest score counts.
-std::map<int, data_set::PoseRow> rows_of_object(const EvaluateOptions& options) {
-    const int scene_id = scene_number(options);
-    const std::vector<data_set::PoseRow> rows = data_set::read_pose_csv(options.results);
-    std::map<int, data_set::PoseRow> best;
-    bool scene_found = false;
-    for (const data_set::PoseRow& row : rows) {
-        if (row.scene_id != scene_id) continue;
-        scene_found = true;
-        if (row.object_id != options.object) continue;
-        const auto [place, added] = best.emplace(row.image_id, row);
-        if (!added && row.score > place->second.score) place->second = row;
+void check(const EvaluateOptions& options) {
+    if (!options.calibration.empty() && options.log.empty()) {
+        throw BadUse("--calibration needs the covariances: give the log of the estimation with --log");
     }
-    if (!scene_found) {
-        throw std::runtime_error(options.results.string() + ": has no row of scene " + std::to_string(scene_id) +
-                                 (rows.empty() ? "" : ", but of scene " + std::to_string(rows.front().scene_id)));
-    }
-    if (best.empty()) {
-        throw std::runtime_error(options.results.string() + ": has no row of object " + std::to_string(options.object));
-    }
-    return best;
-}
-
-std::vector<FrameErrors> errors_of(const EvaluateOptions& options) {
-    const data_set::ModelInfo model = data_set::read_model_info(options.models, options.object);
-    const std::map<int, Pose> truth = data_set::read_ground_truth(options.scene, options.object);
-    const std::map<int, data_set::PoseRow> rows = rows_of_object(options);
-    std::vector<FrameErrors> frames;
-    for (const auto& [frame_id, camera_from_object] : truth) {
-        if (frame_id < options.first.value_or(frame_id) || frame_id > options.last.value_or(frame_id)) continue;
-        const auto row = rows.find(frame_id);
-        frames.emplace_back().frame_id = frame_id;
-        if (row != rows.end()) {
-            frames.back().errors = evaluation::pose_error(row->second.camera_from_object, camera_from_object, model);
+    const std::array<const std::filesystem::path*, 5> files = {&options.out, &options.json, &options.plot,
+                                                               &options.curves, &options.calibration};
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        for (std::size_t j = i + 1; j < files.size(); ++j) {
+            if (!files[i]->empty() && *files[i] == *files[j] && *files[i] != "/dev/null") {
+                throw BadUse("two of --out, --json, --plot, --curves and --calibration are " + files[i]->string());
+            }
         }
     }
-    if (frames.empty()) throw std::runtime_error(options.scene.string() + ": no frame between --first and --last");
-    return frames;
 }
 
-std::string short_table(const std::vector<FrameErrors>& frames) {
-    std::string table = "im_id,translation_error_mm,rotation_error_deg\n";
+// Returns the path; its folder exists afterwards.
+const std::filesystem::path& with_folder(const std::filesystem::path& file) {
+    if (file.has_parent_path()) data_set::create_folder(file.parent_path());
+    return file;
+}
+
+void write_text(const std::filesystem::path& path, const std::string& text) {
+    if (!path.empty() && path != "-") data_set::write_file_atomically(with_folder(path), text);
+}
+
+void write_error_plot(const EvaluateOptions& options, const std::vector<FrameErrors>& frames) {
+    std::vector<pictures::ErrorPoint> points;
     for (const FrameErrors& frame : frames) {
-        table += std::to_string(frame.frame_id) + ",";
-        if (frame.errors) table += data_set::format_fixed(1e3 * frame.errors->translation_m, 4);
-        table += ",";
-        if (frame.errors) table += data_set::format_fixed(kDegrees * frame.errors->rotation_rad, 4);
-        table += "\n";
+        pictures::ErrorPoint& point = points.emplace_back();
+        point.frame_id = frame.frame_id;
+        if (frame.errors) point.translation_mm = 1e3 * frame.errors->translation_m;
+        if (frame.errors) point.rotation_deg = kDegrees * frame.errors->rotation_rad;
     }
-    return table;
+    pictures::write_error_plot(with_folder(options.plot), "Pose error, object " + std::to_string(options.object),
+                               points);
 }
 
-std::string padded(const std::string& text, std::size_t width) {
-    return text.size() < width ? std::string(width - text.size(), ' ') + text : text;
-}
-
-std::string statistics_row(const std::string& label, const std::vector<double>& values) {
-    const evaluation::Statistics statistics = evaluation::statistics_of(values);
-    std::string row = label + std::string(18 - label.size(), ' ');
-    for (const double value : {statistics.mean, statistics.median, statistics.percentile_95, statistics.max}) {
-        row += padded(data_set::format_fixed(value, 3), 10);
-    }
-    return row + "\n";
-}
-
-std::string arrival_text(const EvaluateOptions& options, const std::vector<FrameErrors>& frames) {
-    const evaluation::ErrorLimit limit{1e-3 * options.within_mm, options.within_deg / kDegrees};
-    const std::string name = "within " + data_set::format_number(options.within_mm) + " mm and " +
-                             data_set::format_number(options.within_deg) + " deg: ";
-    const evaluation::Arrival arrival = evaluation::arrival_of(frames, limit);
-    const auto frame_of = [&](int index) { return std::to_string(frames[static_cast<std::size_t>(index)].frame_id); };
-    if (!arrival.first_index) return name + "never\n";
-    std::string text = name + "first in frame " + frame_of(*arrival.first_index);
-    if (!arrival.holds_from) return text + ", but not in the last frame\n";
-    return text + (arrival.stays() ? ", and in every frame from there on\n"
-                                   : ", for good from frame " + frame_of(*arrival.holds_from) + " on\n");
-}
-
-std::string summary_of(const EvaluateOptions& options, const std::vector<FrameErrors>& frames) {
-    std::vector<double> translations_mm, rotations_deg;
-    std::size_t missing = 0;
-    const std::size_t burn_in = std::min(frames.size(), static_cast<std::size_t>(options.burn_in));
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-        if (!frames[i].errors) ++missing;
-        if (i < burn_in || !frames[i].errors) continue;
-        translations_mm.push_back(1e3 * frames[i].errors->translation_m);
-        rotations_deg.push_back(kDegrees * frames[i].errors->rotation_rad);
-    }
-    std::string text = "object " + std::to_string(options.object) + " in " + options.scene.string() + ": " +
-                       std::to_string(frames.size()) + " frames, " + std::to_string(missing) + " without a pose\n";
-    if (burn_in < frames.size()) {
-        text += "frames " + std::to_string(frames[burn_in].frame_id) + " to " + std::to_string(frames.back().frame_id) +
-                (burn_in > 0 ? " (those before are the burn-in)" : "") + "\n";
-    }
-    if (translations_mm.empty()) {
-        text += "no frame with a pose after the burn-in\n";
-    } else {
-        text += std::string(18, ' ') + padded("mean", 10) + padded("median", 10) + padded("95 %", 10) +
-                padded("max", 10) + "\n";
-        text += statistics_row("translation [mm]", translations_mm);
-        text += statistics_row("rotation [deg]", rotations_deg);
-    }
-    return text + arrival_text(options, frames);
-}
-
-int evaluate(const EvaluateOptions& options, const SharedOptions&) {
-    const std::vector<FrameErrors> frames = errors_of(options);
-    if (!options.out.empty() && options.out != "-") {
-        data_set::write_file_atomically(options.out, short_table(frames));
-    }
-    if (!options.plot.empty()) {
-        std::vector<pictures::ErrorPoint> points;
-        for (const FrameErrors& frame : frames) {
-            pictures::ErrorPoint point;
-            point.frame_id = frame.frame_id;
-            if (frame.errors) point.translation_mm = 1e3 * frame.errors->translation_m;
-            if (frame.errors) point.rotation_deg = kDegrees * frame.errors->rotation_rad;
-            points.push_back(point);
+// The curves are of the frames after the burn-in, as the statistics are.
+void write_curves(const EvaluateOptions& options, const evaluation::SceneTruth& truth,
+                  const std::vector<FrameErrors>& frames) {
+    const auto burn_in = std::min<std::ptrdiff_t>(options.burn_in, static_cast<std::ptrdiff_t>(frames.size()));
+    const std::vector<FrameErrors> settled(frames.begin() + burn_in, frames.end());
+    if (!options.curves.empty()) {
+        const auto plots = evaluation::error_curves(settled);
+        if (plots.empty()) {
+            throw std::runtime_error(
+                "--curves: no frame after the burn-in has both a pose and visible points" +
+                (truth.visibility_problem.empty() ? std::string() : " (" + truth.visibility_problem + ")"));
         }
-        pictures::write_error_plot(options.plot, "Pose error, object " + std::to_string(options.object), points);
+        pictures::write_curve_plots(with_folder(options.curves), plots);
     }
-    print(options.out == "-" ? short_table(frames) : summary_of(options, frames));
+    if (!options.calibration.empty()) {
+        const auto plots = evaluation::calibration_curves(settled);
+        if (plots.empty()) {
+            throw std::runtime_error(options.log.string() + ": has no covariance of a frame after the burn-in");
+        }
+        pictures::write_curve_plots(with_folder(options.calibration), plots);
+    }
+}
+
+// For evo: both with the same stamps, of the centre of the box, whose error is that of the summary; the truth is the
+// equivalent pose that is nearest.
+void write_trajectories(const std::filesystem::path& folder, const evaluation::SceneTruth& truth,
+                        const evaluation::Estimates& estimates, const evaluation::ModelShape& shape) {
+    data_set::create_folder(folder);
+    data_set::TumWriter true_poses(folder / "truth.tum"), poses(folder / "poses.tum");
+    const Pose object_from_centre{Eigen::Quaterniond::Identity(), shape.centre_in_object_m()};
+    for (std::size_t i = 0; i < truth.frames.size(); ++i) {
+        const auto found = estimates.of_frame.find(truth.frames[i].frame_id);
+        if (found == estimates.of_frame.end()) continue;
+        const Pose& estimate = found->second.camera_from_object;
+        const Pose nearest = evaluation::nearest_equivalent(estimate, truth.frames[i].camera_from_object, shape.info);
+        true_poses.append(truth.images[i].stamp_s, nearest * object_from_centre);
+        poses.append(truth.images[i].stamp_s, estimate * object_from_centre);
+    }
+    true_poses.close();
+    poses.close();
+}
+
+int evaluate(const EvaluateOptions& options, const SharedOptions& shared) {
+    check(options);
+    data_set::SceneOptions which;
+    which.scene_id = options.scene_id;
+    which.first_frame = options.first;
+    which.last_frame = options.last;
+    evaluation::SceneTruth truth = evaluation::read_truth(options.scene, options.object, which);
+    evaluation::Estimates estimates = evaluation::read_estimates(options.results, truth);
+    if (!options.log.empty()) evaluation::add_log(options.log, estimates);
+    const evaluation::ModelShape shape = evaluation::load_shape(options.models, options.object);
+    evaluation::add_visibility(truth);
+    for (const std::string& notice : estimates.notices) print_notice(notice, shared.quiet);
+    if (!truth.visibility_problem.empty()) {
+        print_notice("distance and visible volume are left out of some frames: " + truth.visibility_problem,
+                     shared.quiet);
+    }
+
+    const std::vector<FrameErrors> frames = evaluation::errors_of(truth, estimates, shape);
+    evaluation::SummaryOptions limits;
+    limits.burn_in = options.burn_in;
+    limits.coarse = {1e-3 * options.within_mm, options.within_deg / kDegrees};
+    const evaluation::RunSummary summary = evaluation::summarise(frames, shape.info.diameter_m, limits);
+    const evaluation::SummaryHeading heading{options.scene.string(), options.results.string(), truth.scene.id,
+                                             options.object, shape.info.diameter_m};
+    write_text(options.out, evaluation::table_of(frames));
+    write_text(options.json, evaluation::summary_json(heading, frames, summary, limits));
+    if (!options.plot.empty()) write_error_plot(options, frames);
+    write_curves(options, truth, frames);
+    if (!options.trajectories.empty()) write_trajectories(options.trajectories, truth, estimates, shape);
+    if (options.out == "-") {
+        print(evaluation::table_of(frames));
+    } else if (options.json == "-") {
+        print(evaluation::summary_json(heading, frames, summary, limits));
+    } else {
+        print(evaluation::summary_text(heading, frames, summary, limits));
+    }
     return kSuccess;
 }
 
@@ -172,11 +155,14 @@ void add_evaluate_command(CLI::App& app, const SharedOptions& shared, Run& run) 
     CLI::App* command = app.add_subcommand("evaluate", "Errors of a result file against the scene's true poses");
     command->footer(
         "The translation error is that of the centre of the model's box. Of the poses in which a symmetric part looks\n"
-        "the same, the one counts in which the corners of its box are nearest to the estimate's.");
+        "the same, the one counts in which the corners of its box are nearest to the estimate's. ADD, ADD-S (ADI), "
+        "MSSD\n"
+        "and MSPD are bop_toolkit's, over the vertices of models_eval beside --models where there is that folder.");
     command->add_option("--scene", options->scene, "Folder of a BOP scene with scene_gt.json")->required();
     command->add_option("--models", options->models, "Folder of BOP models with models_info.json")->required();
     command->add_option("--object", options->object, "Number of the object");
     command->add_option("--results", options->results, "BOP result file")->required();
+    command->add_option("--log", options->log, "Log of the same estimation, for covariances and predicted frames");
     command->add_option("--scene-id", options->scene_id, "scene_id of the results [the folder's number]");
     command->add_option("--first", options->first, "Number of the first frame [the scene's first]");
     command->add_option("--last", options->last, "Number of the last frame [the scene's last]");
@@ -185,7 +171,14 @@ void add_evaluate_command(CLI::App& app, const SharedOptions& shared, Run& run) 
     command->add_option("--within-mm", options->within_mm, "Limit of arrival [mm]")->check(CLI::PositiveNumber);
     command->add_option("--within-deg", options->within_deg, "Limit of arrival [deg]")->check(CLI::PositiveNumber);
     command->add_option("--out", options->out, "Table of errors to write, a row a frame; - instead of the summary");
+    command->add_option("--json", options->json, "All figures as JSON to write; - instead of the summary");
     command->add_option("--plot", options->plot, "Picture of errors over frames to write (PNG)");
+    command->add_option("--curves", options->curves,
+                        "Picture of errors over distance, visible volume and visible fraction to write (PNG)");
+    command->add_option("--calibration", options->calibration,
+                        "Picture of how often the truth lies inside the p-region of the covariance to write (PNG)");
+    command->add_option("--trajectory-out", options->trajectories,
+                        "Folder for truth.tum and poses.tum with equal stamps, of the centre of the box, for evo");
     command->callback([options, &shared, &run] { run = [options, &shared] { return evaluate(*options, shared); }; });
 }
 

@@ -13,4 +13,8 @@ namespace nearpose::data_set {
 // the object.
 std::map<int, Pose> read_ground_truth(const std::filesystem::path& scene_folder, int object_id);
 
+// The visible part of the object's silhouette by frame number, in 0..1 (visib_fract of scene_gt_info.json, of the same
+// instance as above); empty where there is no such file. Throws std::runtime_error naming file, frame and key.
+std::map<int, double> read_visible_fractions(const std::filesystem::path& scene_folder, int object_id);
+
 }  // namespace nearpose::data_set

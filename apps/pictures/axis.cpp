@@ -58,6 +58,17 @@ Axis frame_axis(double first, double last, int num_ticks) {
     return axis;
 }
 
+Axis round_axis(double low, double high, int num_ticks, bool logarithmic) {
+    if (logarithmic) return logarithmic_axis(low, high);
+    const double step = round_up((high - low) / num_ticks);
+    const double first = std::floor(low / step + 1e-9), last = std::ceil(high / step - 1e-9);
+    Axis axis;
+    axis.low = first * step;
+    axis.high = last * step;
+    for (double i = first; i <= last; ++i) axis.ticks.push_back(i * step);
+    return axis;
+}
+
 Axis error_axis(const std::vector<double>& values) {
     constexpr double kSpan = 30.0;
     double smallest = 1e300, largest = 0.0;

@@ -72,6 +72,18 @@ void Canvas::fill_rectangle(double left, double top, double right, double bottom
     fill(rgb_, width_, height_, path, color, opacity);
 }
 
+void Canvas::fill_polygon(const std::vector<Eigen::Vector2d>& corners, Color color, double opacity) {
+    if (corners.size() < 3) return;
+    agg::path_storage path;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const Eigen::Vector2d corner = bounded(corners[i]);
+        if (i == 0) path.move_to(corner.x() + kCentre, corner.y() + kCentre);
+        if (i > 0) path.line_to(corner.x() + kCentre, corner.y() + kCentre);
+    }
+    path.close_polygon();
+    fill(rgb_, width_, height_, path, color, opacity);
+}
+
 void Canvas::polyline(const std::vector<Eigen::Vector2d>& points, double line_width, Color color, double opacity) {
     if (points.size() < 2) return;
     agg::path_storage path;

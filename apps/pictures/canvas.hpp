@@ -25,6 +25,7 @@ class Canvas {
     // All drawing is clipped to the picture; opacity is in 0..1.
     void blend(int x, int y, Color color, double opacity = 1.0);
     void fill_rectangle(double left, double top, double right, double bottom, Color color, double opacity = 1.0);
+    void fill_polygon(const std::vector<Eigen::Vector2d>& corners, Color color, double opacity = 1.0);
     void polyline(const std::vector<Eigen::Vector2d>& points, double line_width, Color color, double opacity = 1.0);
     void disc(const Eigen::Vector2d& centre, double radius, Color color);
     // ASCII text whose baseline runs through `at`; `size` is the height of capitals [pixels].

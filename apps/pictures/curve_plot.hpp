@@ -15,6 +15,7 @@ struct CurvePlot {
     std::string y_title;
     bool x_logarithmic = false;  // y is where its values span a lot
     std::vector<evaluation::Curve> curves;
+    bool is_share_of_share = false;  // both axes run from 0 to 1, with the diagonal where they should agree
 };
 
 // Medians as lines, the middle half of the values as bands, a legend. Plots lie below each other in one picture. Throws

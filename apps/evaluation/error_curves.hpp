@@ -1,0 +1,22 @@
+// The paper's figure, and whether the covariances can be believed, as curves over the frames of one run or many.
+#pragma once
+
+#include <vector>
+
+#include "apps/evaluation/frame_errors.hpp"
+#include "apps/pictures/curve_plot.hpp"
+
+namespace nearpose::evaluation {
+
+// Translation and rotation error against the distance of the visible points, their volume, and the visible fraction
+// where it is known. Frames without a pose or visibility give nothing. Empty where none is left.
+std::vector<pictures::CurvePlot> error_curves(const std::vector<FrameErrors>& frames);
+
+// Share of the frames in which the truth lies inside the region that should hold a share p of it, against p: for all
+// frames (its band is the 95 % interval) and by distance. Empty where no frame has a covariance.
+std::vector<pictures::CurvePlot> calibration_curves(const std::vector<FrameErrors>& frames);
+
+// The chance that chi-square of 6 degrees of freedom is below `squared`.
+double chi_square_of_6(double squared);
+
+}  // namespace nearpose::evaluation
