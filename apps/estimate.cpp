@@ -10,103 +10,18 @@
 #include "apps/console.hpp"
 #include "apps/data_set/number_text.hpp"
 #include "apps/data_set/result_csv.hpp"
-#include "apps/estimate_outputs.hpp"
+#include "apps/estimate_options.hpp"
 #include "apps/estimator_setup.hpp"
-#include "apps/frame_source.hpp"
-#include "apps/model_input.hpp"
 #include "apps/pose_file.hpp"
+#include "apps/run_folder.hpp"
 #include "core/estimator.hpp"
 
 namespace nearpose::program {
 namespace {
 
-struct EstimateOptions {
-    std::filesystem::path scene, clouds, camera;
-    ModelOptions model;
-    OutputOptions outputs;
-    std::string views = "raycast", method = "default";
-    int particles = EstimatorOptions{}.num_particles;
-    int threads = EstimatorOptions{}.num_threads;
-    std::uint64_t seed = EstimatorOptions{}.seed;
-    bool no_mask = false, no_control = false;
-    std::optional<int> mask_index, first, last, scene_id;
-    double fps = 30.0;
-    std::filesystem::path initial_pose;
-    double initial_sigma_mm = 10.0, initial_sigma_deg = 5.0;
-};
-
 struct Tally {
     int frames = 0, unread = 0, seen = 0;
 };
-
-void add_input_options(CLI::App& command, EstimateOptions& options) {
-    command.add_option("--scene", options.scene, "Folder of a BOP scene: scene_camera.json, depth/, mask_visib/");
-    command.add_option("--clouds", options.clouds,
-                       "Instead of --scene: folder of .pcd or .ply clouds, camera frame, m");
-    command.add_option("--camera", options.camera, "camera.json of --clouds (cx cy fx fy width height)");
-    add_bop_model_options(command, options.model);
-    add_model_file_options(command, options.model);
-    command.add_flag("--no-mask", options.no_mask, "Use every measured point in range, not the mask's alone");
-    command.add_option("--mask-index", options.mask_index, "KKKKKK of the mask files [from scene_gt.json, else 0]")
-        ->check(CLI::Range(0, 999999));
-    command.add_flag("--no-control", options.no_control, "Leave the measured camera motion unused");
-    command.add_option("--first", options.first, "Number of the first frame [the scene's first]");
-    command.add_option("--last", options.last, "Number of the last frame [the scene's last]");
-    command.add_option("--scene-id", options.scene_id, "scene_id of the results [the folder's number]");
-    command.add_option("--fps", options.fps, "Frames per second where the scene has no time stamps")
-        ->check(CLI::Range(1e-3, 1e6));
-}
-
-void add_estimator_options(CLI::App& command, EstimateOptions& options) {
-    command.add_option("--views", options.views, "View generation: raycast, raster or sphere")
-        ->check(CLI::IsMember(view_names()));
-    command.add_option("--method", options.method, "default, or paper: the paper's formulas to the letter")
-        ->check(CLI::IsMember(method_names()));
-    command.add_option("--particles", options.particles, "Number of particles")->check(CLI::Range(1, 1000000));
-    command.add_option("--threads", options.threads, "Threads; 0: all. Results do not depend on it")
-        ->check(CLI::Range(0, 4096));
-    command.add_option("--seed", options.seed, "Seed of all random draws");
-    command.add_option("--initial-pose", options.initial_pose, "Start from this pose: JSON with cam_R_m2c, cam_t_m2c");
-    command.add_option("--initial-sigma-mm", options.initial_sigma_mm, "Spread of the start around that pose [mm]")
-        ->check(CLI::Range(0.0, 1e6));
-    command.add_option("--initial-sigma-deg", options.initial_sigma_deg, "Spread of the start around that pose [deg]")
-        ->check(CLI::Range(0.0, 180.0));
-}
-
-void add_output_options(CLI::App& command, OutputOptions& options) {
-    command
-        .add_option("--out", options.out,
-                    "BOP result file to write (bop_toolkit wants METHOD_DATASET-SPLIT.csv); - is the standard output")
-        ->required();
-    command.add_option("--log", options.log, "Log to write: a JSON object a line");
-    command.add_option("--trajectory", options.trajectory, "Trajectory to write: TUM rows, metres");
-    command
-        .add_option("--trajectory-frame", options.trajectory_frame,
-                    "Its rows: camera (camera_from_object), object (inverse), world (world_from_object)")
-        ->check(CLI::IsMember({"camera", "object", "world"}));
-    command.add_option("--pictures", options.pictures, "Folder to write a picture of each frame into");
-}
-
-void check(const EstimateOptions& options) {
-    if (options.scene.empty() == options.clouds.empty()) {
-        throw BadUse(options.scene.empty() ? "an input is needed: --scene DIR, or --clouds DIR --camera camera.json"
-                                           : "--scene and --clouds exclude each other");
-    }
-    if (options.clouds.empty() != options.camera.empty()) throw BadUse("--clouds and --camera go together");
-    if (options.mask_index && options.no_mask) throw BadUse("--mask-index and --no-mask exclude each other");
-    if (options.first && options.last && *options.first > *options.last) throw BadUse("--first lies after --last");
-    if (options.outputs.trajectory_frame == "world" && !options.clouds.empty()) {
-        throw BadUse("--trajectory-frame world needs the camera motion of a --scene");
-    }
-    check(options.model);
-    check(options.outputs);
-}
-
-std::unique_ptr<FrameSource> open_source(const EstimateOptions& options) {
-    const data_set::SceneOptions scene{options.scene_id, options.fps, options.first, options.last};
-    if (options.scene.empty()) return open_cloud_source(options.clouds, options.camera, scene, !options.no_mask);
-    return open_bop_source(options.scene, scene, {!options.no_mask, options.model.object, options.mask_index});
-}
 
 PoseEstimator make_estimator(const EstimateOptions& options, const Mesh& mesh) {
     EstimatorOptions estimator;
@@ -198,7 +113,7 @@ void run_frame(const EstimateOptions& options, const SharedOptions& shared, cons
                      shared.quiet);
     }
     if (result.status == UpdateStatus::kEstimated) ++tally.seen;
-    outputs.append(frame, report, observation, result);
+    outputs.append(frame, report, observation, result, estimator.particles());
 }
 
 int exit_code(const Tally& tally) {
@@ -220,15 +135,20 @@ int exit_code(const Tally& tally) {
     return kFramesUnread;
 }
 
-int estimate(const EstimateOptions& options, const SharedOptions& shared) {
-    check(options);
+int estimate(const EstimateOptions& given, const SharedOptions& shared) {
+    check(given);
+    EstimateOptions options = given;
+    options.outputs = with_run_folder(given.outputs);
     const std::unique_ptr<FrameSource> source = open_source(options);
     check_motion(options, *source);
     const Mesh mesh = load_model(options.model, shared);
     PoseEstimator estimator = make_estimator(options, mesh);
     EstimateOutputs outputs(options.outputs, describe(options, *source), mesh);
+    if (!options.outputs.run.empty()) write_run_record(options.outputs.run, options, source->scene_id());
     if (!source->notice().empty()) print_notice(source->notice(), shared.quiet);
-    if (const auto notice = data_set::bop_file_name_notice(options.outputs.out)) print_notice(*notice, shared.quiet);
+    if (const auto notice = data_set::bop_file_name_notice(given.outputs.out); notice && !given.outputs.out.empty()) {
+        print_notice(*notice, shared.quiet);
+    }
 
     Tally tally;
     Progress progress("estimate", static_cast<int>(source->frames().size()), shared.quiet);
@@ -245,9 +165,7 @@ int estimate(const EstimateOptions& options, const SharedOptions& shared) {
 void add_estimate_command(CLI::App& app, const SharedOptions& shared, Run& run) {
     auto options = std::make_shared<EstimateOptions>();
     CLI::App* command = app.add_subcommand("estimate", "Pose of a part in every frame of a scene");
-    add_input_options(*command, *options);
-    add_estimator_options(*command, *options);
-    add_output_options(*command, options->outputs);
+    add_estimate_options(*command, *options);
     command->callback([options, &shared, &run] { run = [options, &shared] { return estimate(*options, shared); }; });
 }
 

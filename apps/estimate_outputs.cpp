@@ -5,6 +5,7 @@
 #include "apps/data_set/file_io.hpp"
 #include "apps/data_set/number_text.hpp"
 #include "apps/pictures/overlay.hpp"
+#include "apps/run_folder.hpp"
 
 namespace nearpose::program {
 namespace {
@@ -17,7 +18,19 @@ const std::filesystem::path& with_folder(const std::filesystem::path& file) {
 
 }  // namespace
 
-void check(const OutputOptions& options) {
+OutputOptions with_run_folder(OutputOptions options) {
+    if (options.run.empty()) return options;
+    if (options.out.empty()) options.out = options.run / kPosesFile;
+    if (options.log.empty()) options.log = options.run / kLogFile;
+    if (options.trajectory.empty()) options.trajectory = options.run / kTrajectoryFile;
+    return options;
+}
+
+void check(const OutputOptions& given) {
+    if (given.out.empty() && given.run.empty()) {
+        throw BadUse("an output is needed: --run DIR for all of it, or --out FILE for the poses");
+    }
+    const OutputOptions options = with_run_folder(given);
     const std::array<const std::filesystem::path*, 3> files = {&options.out, &options.log, &options.trajectory};
     for (std::size_t i = 0; i < files.size(); ++i) {
         for (std::size_t j = i + 1; j < files.size(); ++j) {
@@ -34,6 +47,10 @@ EstimateOutputs::EstimateOutputs(const OutputOptions& options, const RunDescript
         log_.emplace(with_folder(options.log));
         log_->append(first_log_line(run));
     }
+    if (!options.run.empty()) {
+        particles_.emplace(with_folder(options.run / kParticlesFile));
+        particles_->append(first_particles_line());
+    }
     if (!options.trajectory.empty()) trajectory_.emplace(with_folder(options.trajectory));
     if (!options.pictures.empty()) {
         data_set::create_folder(options.pictures);
@@ -42,7 +59,7 @@ EstimateOutputs::EstimateOutputs(const OutputOptions& options, const RunDescript
 }
 
 void EstimateOutputs::append(const FrameInfo& frame, const FrameReport& report, const Observation& observation,
-                             const UpdateResult& result) {
+                             const UpdateResult& result, const ParticleSet& particles) {
     if (result.status != UpdateStatus::kNoPose) {
         csv_.append({scene_id_, frame.id, object_id_, result.score, result.camera_from_object, report.time_s});
         const auto pose = trajectory_pose(data_set::trajectory_frame_of(options_.trajectory_frame),
@@ -50,6 +67,7 @@ void EstimateOutputs::append(const FrameInfo& frame, const FrameReport& report, 
         if (trajectory_ && pose) trajectory_->append(frame.stamp_s, *pose);
     }
     if (log_) log_->append(frame_log_line(report, result));
+    if (particles_) particles_->append(particles_line(report.frame_id, particles));
     if (scene_) draw(report, observation, result);
 }
 
@@ -74,6 +92,7 @@ void EstimateOutputs::draw(const FrameReport& report, const Observation& observa
 void EstimateOutputs::close() {
     csv_.close();
     if (log_) log_->close();
+    if (particles_) particles_->close();
     if (trajectory_) trajectory_->close();
 }
 

@@ -17,6 +17,7 @@
 namespace nearpose::program {
 
 struct OutputOptions {
+    std::filesystem::path run;         // folder that gets all of it; empty: none
     std::filesystem::path out;         // BOP result file
     std::filesystem::path log;         // empty: none; the same for the next two
     std::filesystem::path trajectory;  // TUM rows
@@ -24,17 +25,19 @@ struct OutputOptions {
     std::string trajectory_frame = "camera";
 };
 
-// Throws BadUse where two outputs have the same name.
+// Throws BadUse where nothing is to be written, or two outputs have the same name.
 void check(const OutputOptions& options);
+// With the names that outputs without one get in the run folder, where there is one.
+OutputOptions with_run_folder(OutputOptions options);
 
 class EstimateOutputs {
   public:
     // Opens all files; `mesh` is what pictures show. Throws std::runtime_error naming the file.
     EstimateOutputs(const OutputOptions& options, const RunDescription& run, const Mesh& mesh);
 
-    // Writes a frame's rows as soon as they are known. A frame without a pose has a log line and a picture alone.
+    // Writes a frame's rows as soon as they are known. A frame without a pose has no row of poses.
     void append(const FrameInfo& frame, const FrameReport& report, const Observation& observation,
-                const UpdateResult& result);
+                const UpdateResult& result, const ParticleSet& particles);
     void close();
 
   private:
@@ -43,7 +46,7 @@ class EstimateOutputs {
     OutputOptions options_;
     int scene_id_, object_id_;
     data_set::PoseCsvWriter csv_;
-    std::optional<data_set::JsonLinesWriter> log_;
+    std::optional<data_set::JsonLinesWriter> log_, particles_;
     std::optional<data_set::TumWriter> trajectory_;
     std::optional<EmbreeScene> scene_;
 };

@@ -1,5 +1,8 @@
 #include "apps/frame_log.hpp"
 
+#include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -58,6 +61,28 @@ Json modes_of(const std::vector<Mode>& modes) {
     return list;
 }
 
+// Six significant digits: micrometres at a metre, in half the bytes of all digits.
+void append_rounded(std::string& text, double value) {
+    std::array<char, 32> digits{};
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::general, 6);
+    text.append(digits.data(), end.ptr);
+}
+
+// p ~ exp(-w), of sum 1, computed about the smallest w.
+std::vector<double> probabilities(const std::vector<double>& weights) {
+    if (weights.empty()) return {};
+    const double best = *std::min_element(weights.begin(), weights.end());
+    std::vector<double> shares;
+    double sum = 0.0;
+    for (const double weight : weights) {
+        const double share = std::exp(best - weight);
+        shares.push_back(std::isfinite(share) ? share : 0.0);
+        sum += shares.back();
+    }
+    for (double& share : shares) share /= std::max(sum, 1e-300);
+    return shares;
+}
+
 // Text from file names need not be UTF-8.
 std::string dump(const Json& object) {
     return object.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -90,6 +115,38 @@ std::string first_log_line(const RunDescription& run) {
          {"method", run.method},
          {"particles", run.particles},
          {"seed", run.seed}});
+}
+
+std::string first_particles_line() {
+    return dump({{"format", 1},
+                 {"content", "nearpose particles"},
+                 {"pose", "camera_from_object"},
+                 {"columns", "x y z [m], quaternion x y z w, weight (of sum 1)"}});
+}
+
+std::string particles_line(int frame_id, const ParticleSet& particles) {
+    const std::vector<double> shares = probabilities(particles.weights);
+    std::string line = "{\"frame\":" + std::to_string(frame_id) + ",\"particles\":[";
+    for (std::size_t i = 0; i < particles.poses.size(); ++i) {
+        const Pose& pose = particles.poses[i];
+        const Eigen::Vector4d xyzw = pose.rotation.w() < 0.0 ? Eigen::Vector4d(-pose.rotation.coeffs())
+                                                             : Eigen::Vector4d(pose.rotation.coeffs());
+        const std::array<double, 8> row = {pose.translation.x(),
+                                           pose.translation.y(),
+                                           pose.translation.z(),
+                                           xyzw.x(),
+                                           xyzw.y(),
+                                           xyzw.z(),
+                                           xyzw.w(),
+                                           shares[i]};
+        line += i == 0 ? "[" : ",[";
+        for (std::size_t column = 0; column < row.size(); ++column) {
+            if (column > 0) line += ',';
+            append_rounded(line, row[column]);
+        }
+        line += ']';
+    }
+    return line + "]}";
 }
 
 std::string frame_log_line(const FrameReport& frame, const UpdateResult& result) {

@@ -1,4 +1,5 @@
-// The log of an estimation: one JSON object a line. The first says the format, the others are frames.
+// The logs of an estimation, of frames and of particles: one JSON object a line. The first says the format, the others
+// are frames.
 #pragma once
 
 #include <string>
@@ -30,5 +31,10 @@ Matrix6d ros_covariance(const Matrix6d& covariance, const Pose& camera_from_obje
 std::string first_log_line(const RunDescription& run);
 // Without a pose the keys that describe one are left out.
 std::string frame_log_line(const FrameReport& frame, const UpdateResult& result);
+
+std::string first_particles_line();
+// {"frame": 3, "particles": [[x, y, z, qx, qy, qz, qw, weight], ...]}: camera_from_object with 6 significant digits and
+// its share of all weight.
+std::string particles_line(int frame_id, const ParticleSet& particles);
 
 }  // namespace nearpose::program

@@ -168,6 +168,16 @@ int JsonValue::integer() const {
     return static_cast<int>(value);
 }
 
+std::uint64_t JsonValue::unsigned_integer() const {
+    if (!value_->is_number_unsigned()) throw error("must be a whole number from 0 on");
+    return value_->get<std::uint64_t>();
+}
+
+bool JsonValue::flag() const {
+    if (!value_->is_boolean()) throw error("must be true or false");
+    return value_->get<bool>();
+}
+
 std::string JsonValue::text() const {
     if (!is_string()) throw error("must be a text");
     return value_->get<std::string>();

@@ -33,8 +33,10 @@ class JsonValue {
     // The members of an object whose keys are non-negative integers (BOP's frames and objects), in numeric order.
     std::vector<std::pair<int, JsonValue>> numbered_members() const;
 
-    double number() const;  // finite
-    int integer() const;    // no fraction, fits an int
+    double number() const;                   // finite
+    int integer() const;                     // no fraction, fits an int
+    std::uint64_t unsigned_integer() const;  // every one of 64 bits, as seeds are
+    bool flag() const;                       // true or false
     std::string text() const;
     std::vector<double> numbers(std::size_t count) const;  // an array of exactly `count` finite numbers
     std::vector<double> numbers() const;                   // of any length
