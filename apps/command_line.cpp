@@ -14,6 +14,7 @@
 #include "apps/evaluate.hpp"
 #include "apps/import_command.hpp"
 #include "apps/render.hpp"
+#include "apps/report_command.hpp"
 #include "apps/simulate/simulate_command.hpp"
 #include "apps/version.hpp"
 
@@ -147,6 +148,7 @@ struct Shell {
         add_render_command(app, shared, run);
         add_evaluate_command(app, shared, run);
         add_import_command(app, shared, run);
+        add_report_command(app, shared, run);
         app.require_subcommand(0, 1);
         for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
             command->fallthrough();

@@ -109,8 +109,9 @@ void decode(OpenPng& png, void* pixels, std::size_t byte_count, int format, cons
     check(spng_decode_chunks(png.context.get()), path);
 }
 
-void write_png(const std::filesystem::path& path, ImageSize size, std::uint8_t bit_depth, std::uint8_t color_type,
-               const void* pixels, std::size_t byte_count) {
+// `path` is for messages.
+std::string encode_png(const std::filesystem::path& path, ImageSize size, std::uint8_t bit_depth,
+                       std::uint8_t color_type, const void* pixels, std::size_t byte_count) {
     if (size.width < 1 || size.height < 1 || size.width > kMaxImageSide || size.height > kMaxImageSide) {
         throw std::invalid_argument(path.string() + ": a picture of " + std::to_string(size.width) + " x " +
                                     std::to_string(size.height) + " pixels cannot be written");
@@ -135,7 +136,12 @@ void write_png(const std::filesystem::path& path, ImageSize size, std::uint8_t b
     const std::unique_ptr<void, decltype(&std::free)> bytes(spng_get_png_buffer(context.get(), &length, &code),
                                                             &std::free);
     require(code);
-    write_file_atomically(path, {static_cast<const char*>(bytes.get()), length});
+    return {static_cast<const char*>(bytes.get()), length};
+}
+
+void write_png(const std::filesystem::path& path, ImageSize size, std::uint8_t bit_depth, std::uint8_t color_type,
+               const void* pixels, std::size_t byte_count) {
+    write_file_atomically(path, encode_png(path, size, bit_depth, color_type, pixels, byte_count));
 }
 
 void check_scale(double depth_scale_mm) {
@@ -246,6 +252,13 @@ void write_mask_png(const std::filesystem::path& path, const Mask& mask) {
     std::transform(mask.value.begin(), mask.value.end(), grey.begin(),
                    [](std::uint8_t value) { return static_cast<std::uint8_t>(value != 0 ? 255 : 0); });
     write_png(path, {mask.width, mask.height}, 8, SPNG_COLOR_TYPE_GRAYSCALE, grey.data(), grey.size());
+}
+
+std::string grey_png_bytes(int width, int height, std::span<const std::uint8_t> grey) {
+    if (width < 0 || height < 0 || grey.size() != pixel_count(width, height)) {
+        throw std::invalid_argument("the grey values do not fill the picture");
+    }
+    return encode_png("picture", {width, height}, 8, SPNG_COLOR_TYPE_GRAYSCALE, grey.data(), grey.size());
 }
 
 void write_rgb_png(const std::filesystem::path& path, int width, int height, std::span<const std::uint8_t> rgb) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/depth_image.hpp"
@@ -49,6 +50,8 @@ void write_depth_png(const std::filesystem::path& path, const DepthImage& image,
 Mask read_mask_png(const std::filesystem::path& path, int expected_width = 0, int expected_height = 0);
 void write_mask_png(const std::filesystem::path& path, const Mask& mask);  // 8-bit grey, 0 and 255
 
+// The bytes of an 8-bit grey PNG, for what is embedded elsewhere. `grey` is row-major.
+std::string grey_png_bytes(int width, int height, std::span<const std::uint8_t> grey);
 // `rgb` holds 3 bytes a pixel, row-major.
 void write_rgb_png(const std::filesystem::path& path, int width, int height, std::span<const std::uint8_t> rgb);
 

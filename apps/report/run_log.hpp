@@ -1,0 +1,37 @@
+// What a run wrote about its frames, read back.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/pose.hpp"
+
+namespace nearpose::report {
+
+struct LoggedFrame {
+    int frame_id = 0;
+    double stamp_s = 0.0;
+    std::string status, error;
+    std::optional<Pose> camera_from_object;
+    std::optional<Matrix6d> covariance;
+    std::optional<double> score, cost;
+    double effective_sample_size = 0.0;
+    int points_observed = 0;
+    bool resampled = false, mode_replaced = false;
+    double time_s = -1.0;
+};
+
+// Both throw std::runtime_error naming file, line and key.
+std::vector<LoggedFrame> read_run_log(const std::filesystem::path& log_jsonl);
+
+// x y z [m], quaternion x y z w, weight.
+using ParticleRow = std::array<float, 8>;
+// By frame; of more than `max_particles` those of the largest weight.
+std::map<int, std::vector<ParticleRow>> read_particles(const std::filesystem::path& particles_jsonl,
+                                                       std::size_t max_particles);
+
+}  // namespace nearpose::report
