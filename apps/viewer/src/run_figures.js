@@ -33,14 +33,14 @@ export function cards({ figures }) {
     const { translation_mm: t, rotation_deg: r, coarse, fine } = figures;
     const [value, text] = arrivalText(coarse);
     const [fineValue, fineText] = arrivalText(fine);
-    list.push(card('Position error, median', digits(t.median), 'mm', `95 % of frames under ${digits(t.percentile_95)} mm, all under ${digits(t.max)} mm`),
-      card('Rotation error, median', digits(r.median), '°', `95 % of frames under ${digits(r.percentile_95)}°, all under ${digits(r.max)}°`),
+    list.push(card('Position error, median', digits(t.median), 'mm', `95 %: ${digits(t.percentile_95)} mm, largest ${digits(t.max)} mm`),
+      card('Rotation error, median', digits(r.median), '°', `95 %: ${digits(r.percentile_95)}°, largest ${digits(r.max)}°`),
       card(`Found, ${within(coarse)}`, value, '', text),
       card(`Precise, ${within(fine)}`, fineValue, '', fineText));
   } else {
     list.push(card('Frames with the part seen', `${figures.estimated} of ${figures.frames}`, '', 'the true poses are not known: no errors are shown'));
   }
-  if (figures.time_ms) list.push(card('Time a frame, median', digits(figures.time_ms.median), 'ms', `95 % under ${digits(figures.time_ms.percentile_95)} ms, without reading files`));
+  if (figures.time_ms) list.push(card('Time a frame, median', digits(figures.time_ms.median), 'ms', `95 %: ${digits(figures.time_ms.percentile_95)} ms`));
   return element('section', { class: 'cards', 'aria-label': 'Key figures' }, list);
 }
 

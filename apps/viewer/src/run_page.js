@@ -73,7 +73,7 @@ function viewPanel(data) {
       choice('Colour', [['depth', 'Depth'], ['residual', 'Residual']], 'depth', (value) => { show(value); view?.set('coloring', value); })),
     stage,
     element('div', { class: 'toggles' },
-      toggle('Model at the estimate', true, set('model'), 'model'), toggle('Measured part', true, set('cloud'), 'measured'),
+      toggle('Model', true, set('model'), 'model'), toggle('Measured', true, set('cloud'), 'measured'),
       toggle('Surroundings', true, set('around'), 'around'),
       has('particles_float32') && toggle('Particles', true, set('particles'), 'particles'),
       has('truth') && toggle('Truth', false, set('truth'), 'truth'),
@@ -110,7 +110,7 @@ export function showRun(page, data) {
   const depth = new DepthView(data.frames);
   const { panel, start } = viewPanel(data);
   page.append(
-    element('header', {}, element('p', { class: 'brand' }, 'nearpose report'), element('h1', {}, data.title), chips(data.run)),
+    element('header', {}, element('div', { class: 'title' }, element('h1', {}, data.title), element('p', { class: 'brand' }, 'nearpose report')), chips(data.run)),
     cards(data),
     element('section', { class: 'scene', 'aria-label': 'Frames' }, panel,
       element('div', { class: 'aside' }, depth.panel, element('div', { class: 'panel' }, facts(data, player))),

@@ -1,0 +1,96 @@
+// A small simulated run, its report, and whether a browser shows it: node check_report.mjs NEARPOSE [CHROMIUM]
+import assert from 'node:assert/strict';
+import { execFileSync, spawnSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync, statSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import path from 'node:path';
+import { pathToFileURL } from 'node:url';
+import { Browser } from './browser.mjs';
+
+const [nearpose, chromium] = process.argv.slice(2);
+const skip = (why) => { console.log(`skipped: ${why}`); process.exit(77); };
+if (!chromium || chromium.endsWith('NOTFOUND')) skip('no chromium (Debian: chromium)');
+
+// A name that would end the page's script, were it not escaped.
+const folder = path.join(mkdtempSync(path.join(tmpdir(), 'nearpose_report_')), '<script>alert(1)<');
+const run = (...words) => execFileSync(nearpose, [...words, '--quiet'], { stdio: ['ignore', 'inherit', 'inherit'] });
+
+// camera_from_object by frame: rows of [R | t], metres, from the result file.
+function posesOf(csv) {
+  const rows = readFileSync(csv, 'utf8').trim().split('\n').slice(1).map((line) => line.split(','));
+  return new Map(rows.map(([, frame, , , R, t]) => {
+    const rotation = R.split(' ').map(Number), translation = t.split(' ').map((value) => Number(value) / 1e3);
+    return [Number(frame), [0, 1, 2].flatMap((i) => [...rotation.slice(3 * i, 3 * i + 3), translation[i]])];
+  }));
+}
+
+async function checkPose(browser, poses, frame) {
+  await browser.until(`document.body.dataset.frame === '${frame}'`, `frame ${frame} is shown`);
+  const shown = (await browser.evaluate('document.body.dataset.pose')).split(' ').map(Number);
+  assert.equal(shown.length, 12);
+  const expected = poses.get(frame);
+  shown.forEach((value, i) => assert.ok(Math.abs(value - expected[i]) < 1e-4, `frame ${frame}: ${shown} is not ${expected}`));
+  return shown;
+}
+
+// Share of the 3-D view's pixels that are not the background's colour.
+const COVERED = `(() => {
+  const stage = document.querySelector('.stage canvas');
+  const canvas = new OffscreenCanvas(stage.width, stage.height);
+  const context = canvas.getContext('2d');
+  context.drawImage(stage, 0, 0);
+  const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
+  let other = 0;
+  for (let i = 0; i < data.length; i += 4) {
+    if (Math.abs(data[i] - data[0]) + Math.abs(data[i + 1] - data[1]) + Math.abs(data[i + 2] - data[2]) > 24) ++other;
+  }
+  return other / (data.length / 4);
+})()`;
+
+async function check(browser, report, poses) {
+  await browser.open(pathToFileURL(report).href);
+  await browser.until(`document.body?.dataset.frame !== undefined && document.querySelectorAll('.uplot').length >= 4 &&
+    document.querySelector('canvas.depth').dataset.frame !== undefined`, 'the page is built');
+  const set = (index) => browser.evaluate(`(() => { const slider = document.getElementById('frame');
+    slider.value = ${index}; slider.dispatchEvent(new Event('input')); })()`);
+  await set(0);
+  const first = await checkPose(browser, poses, 0);
+  await set(3);
+  const third = await checkPose(browser, poses, 3);
+  assert.notDeepEqual(first, third, 'the slider does not move the pose');
+  await browser.evaluate('document.activeElement?.blur()');
+  await browser.key('ArrowRight');
+  await checkPose(browser, poses, 4);
+  await browser.evaluate('location.hash = "#frame=1"');
+  await checkPose(browser, poses, 1);
+
+  // The block alone covers a good part of the view, and nothing does once all is switched off.
+  const toggles = (on) => browser.evaluate(`document.querySelectorAll('.view-panel .toggle input').forEach((box, i) => {
+    if (box.checked !== (${on} && i === 0)) box.click(); })`);
+  const settle = () => browser.evaluate('new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))');
+  await toggles(true);
+  await settle();
+  const block = await browser.evaluate(COVERED);
+  assert.ok(block > 0.03, `the model covers ${block} of the 3-D view`);
+  await toggles(false);
+  await settle();
+  assert.equal(await browser.evaluate(COVERED), 0);
+  assert.deepEqual(browser.problems, []);
+}
+
+let browser = null;
+try {
+  run('simulate', '--scenario', 'piston', '--seed', '1', '--frames', '6', '--out', folder);
+  run('estimate', '--scene', `${folder}/test/000001`, '--models', `${folder}/models`, '--object', '1', '--run', `${folder}/run`);
+  const made = spawnSync(nearpose, ['report', `${folder}/run`, '--quiet'], { encoding: 'utf8' });
+  if (made.status === 1 && made.stderr.includes('nodejs')) skip('the program was built without the viewer');
+  assert.equal(made.status, 0, made.stderr);
+  const report = `${folder}/run/report.html`;
+  assert.ok(statSync(report).size < 2.5e6, `${statSync(report).size} bytes for 6 frames`);
+  browser = new Browser(chromium, `${folder}/profile`);
+  await check(browser, report, posesOf(`${folder}/run/poses.csv`));
+  console.log('the report opens, its slider moves the pose, and the block is seen');
+} finally {
+  await browser?.close();
+  rmSync(path.dirname(folder), { recursive: true, force: true, maxRetries: 5 });
+}
