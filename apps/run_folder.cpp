@@ -62,7 +62,8 @@ Json options_json(const EstimateOptions& options) {
 // What `nearpose --version` says, line by line: a name, spaces, a value.
 Json program_json() {
     Json program = Json::object();
-    for (const std::string_view line : data_set::lines(version_text())) {
+    const std::string text = version_text();  // the lines are parts of it
+    for (const std::string_view line : data_set::lines(text)) {
         const std::size_t space = line.find(' ');
         if (space == line.npos) continue;
         const std::size_t value = line.find_first_not_of(' ', space);

@@ -64,6 +64,11 @@ async function check(browser, report, poses) {
   await browser.evaluate('location.hash = "#frame=1"');
   await checkPose(browser, poses, 1);
 
+  // The plots' cursors follow.
+  const cursors = await browser.evaluate(`[...document.querySelectorAll('.u-legend .u-series:first-child .u-value')]
+    .map((cell) => cell.textContent).join()`);
+  assert.match(cursors, /^1(,1)*$/);
+
   // The block alone covers a good part of the view, and nothing does once all is switched off.
   const toggles = (on) => browser.evaluate(`document.querySelectorAll('.view-panel .toggle input').forEach((box, i) => {
     if (box.checked !== (${on} && i === 0)) box.click(); })`);

@@ -76,7 +76,9 @@ class FramePlot {
   build() {
     this.chart?.destroy();
     const width = Math.max(240, this.holder.clientWidth);
-    this.chart = new uPlot(optionsOf(this.plot, width, 190), [this.ids, ...this.plot.series.map((one) => one.values)], this.holder);
+    // Positions are known once it is laid out.
+    const hooks = { ready: [(chart) => { this.chart = chart; this.show(this.player.index); }] };
+    this.chart = new uPlot({ ...optionsOf(this.plot, width, 190), hooks }, [this.ids, ...this.plot.series.map((one) => one.values)], this.holder);
     this.now = element('div', { class: 'now' });
     const { over } = this.chart;
     over.append(this.now);
@@ -86,7 +88,6 @@ class FramePlot {
     over.addEventListener('pointerdown', pick);
     over.addEventListener('pointermove', pick);
     over.addEventListener('pointerleave', () => setTimeout(() => this.show(this.player.index), 0));
-    this.show(this.player.index);
   }
 
   resize() {
@@ -97,9 +98,9 @@ class FramePlot {
   }
 
   show(index) {
-    if (!this.chart || index < 0) return;
+    if (this.chart?.status !== 1 || index < 0) return;
     this.now.style.transform = `translateX(${this.chart.valToPos(this.ids[index], 'x')}px)`;
-    this.chart.setLegend({ idx: index }, false);
+    this.chart.setLegend({ idx: index });
   }
 }
 

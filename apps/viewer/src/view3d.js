@@ -120,16 +120,16 @@ export class View3d {
     }
     const diameter = this.data.model.diameter_m;
     const up = new THREE.Vector3(0, 1, 0);
-    const middle = Math.floor(0.6 * this.frames.length);
+    const middle = Math.floor(0.5 * this.frames.length);
     const camera = new THREE.Vector3().setFromMatrixPosition(this.heldFromCamera(middle));
     const target = hold === 'part' ? new THREE.Vector3()
       : new THREE.Vector3(...this.data.model.centre_m).applyMatrix4(this.reference(middle)).applyMatrix4(this.heldFromCamera(middle));
     const towards = camera.clone().sub(target).normalize();
     const aside = new THREE.Vector3().crossVectors(up, towards);
     if (aside.length() < 0.3) aside.set(1, 0, 0);
-    const direction = towards.multiplyScalar(0.55).add(aside.normalize().multiplyScalar(0.75)).addScaledVector(up, 0.3).normalize();
+    const direction = towards.multiplyScalar(0.55).add(aside.normalize().multiplyScalar(0.75)).addScaledVector(up, 0.35).normalize();
     // Part and camera both in view: the ball around the two, but never so far off that the part is a dot.
-    const apart = Math.min(camera.distanceTo(target), 2 * diameter);
+    const apart = Math.min(camera.distanceTo(target), 1.2 * diameter);
     const radius = 0.5 * (apart + 0.62 * diameter);
     target.addScaledVector(camera.clone().sub(target).normalize(), Math.max(0, radius - 0.45 * diameter));
     this.eye.position.copy(target).addScaledVector(direction, Math.max(1.5 * diameter, radius / Math.tan(Math.PI * 19 / 180)));

@@ -105,14 +105,13 @@ TEST_F(RunReport, HoldsTheRunAndErrors) {
     std::vector<std::string> notices;
     const Report report = run_report(run_, {}, [&](const std::string& text) { notices.push_back(text); });
     EXPECT_TRUE(notices.empty()) << notices.front();
-    for (const char* part :
-         {"\"kind\":\"run\"", "\"method\":\"default\"", "error_mm", "particles_float32", "depth_png"}) {
+    for (const char* part : {"\"kind\":\"run\"", "\"method\":\"default\"", "\"compiler\":", "\"nearpose\":",
+                             "\"revision\":", "error_mm", "particles_float32", "depth_png"}) {
         EXPECT_TRUE(contains(report.json, part)) << part;
     }
     EXPECT_LT(report.json.size(), 1'000'000U);
     if (viewer_available()) {
         const std::string html = page(report.title, report.json);
-        // The page's own elements end; no data of it ends one.
         EXPECT_TRUE(contains(html, "Permission is hereby granted")) << "licence texts";
     }
 }
