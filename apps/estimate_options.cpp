@@ -66,6 +66,7 @@ void add_estimate_options(CLI::App& command, EstimateOptions& options) {
 }
 
 void check(const EstimateOptions& options) {
+    check(options.outputs);
     if (options.scene.empty() == options.clouds.empty()) {
         throw BadUse(options.scene.empty() ? "an input is needed: --scene DIR, or --clouds DIR --camera camera.json"
                                            : "--scene and --clouds exclude each other");
@@ -77,7 +78,6 @@ void check(const EstimateOptions& options) {
         throw BadUse("--trajectory-frame world needs the camera motion of a --scene");
     }
     check(options.model);
-    check(options.outputs);
 }
 
 std::unique_ptr<FrameSource> open_source(const EstimateOptions& options) {
