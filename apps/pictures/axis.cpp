@@ -58,14 +58,32 @@ Axis frame_axis(double first, double last, int num_ticks) {
     return axis;
 }
 
-Axis round_axis(double low, double high, int num_ticks, bool logarithmic) {
-    if (logarithmic) return logarithmic_axis(low, high);
+Axis round_axis(double low, double high, int num_ticks) {
     const double step = round_up((high - low) / num_ticks);
     const double first = std::floor(low / step + 1e-9), last = std::ceil(high / step - 1e-9);
     Axis axis;
     axis.low = first * step;
     axis.high = last * step;
     for (double i = first; i <= last; ++i) axis.ticks.push_back(i * step);
+    return axis;
+}
+
+Axis ratio_axis(double low, double high) {
+    // Round ends would leave much of the axis empty where values span little; the finest ticks that do not crowd.
+    constexpr double kMargin = 1.05;
+    constexpr std::size_t kMostTicks = 9;
+    Axis axis{low / kMargin, high * kMargin, true, {}};
+    for (const std::vector<double>& factors :
+         {std::vector<double>{1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0}, {1.0, 2.0, 5.0}, {1.0}}) {
+        axis.ticks.clear();
+        for (double exponent = std::floor(std::log10(axis.low)); exponent <= std::log10(axis.high); ++exponent) {
+            for (const double factor : factors) {
+                const double tick = factor * std::pow(10.0, exponent);
+                if (tick >= axis.low && tick <= axis.high) axis.ticks.push_back(tick);
+            }
+        }
+        if (axis.ticks.size() <= kMostTicks) break;
+    }
     return axis;
 }
 

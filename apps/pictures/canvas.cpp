@@ -1,6 +1,7 @@
 #include "apps/pictures/canvas.hpp"
 
 #include <agg_conv_stroke.h>
+#include <agg_conv_transform.h>
 #include <agg_ellipse.h>
 #include <agg_gsv_text.h>
 #include <agg_path_storage.h>
@@ -9,6 +10,7 @@
 #include <agg_renderer_base.h>
 #include <agg_renderer_scanline.h>
 #include <agg_scanline_u.h>
+#include <agg_trans_affine.h>
 
 #include <algorithm>
 #include <cmath>
@@ -113,6 +115,22 @@ void Canvas::text(const Eigen::Vector2d& at, const std::string& text, double siz
     glyphs.start_point(left + kCentre, at.y() + kCentre);
     glyphs.text(text.c_str());
     agg::conv_stroke<agg::gsv_text> stroke(glyphs);
+    stroke.width(size / 7.5);
+    stroke.line_join(agg::round_join);
+    stroke.line_cap(agg::round_cap);
+    fill(rgb_, width_, height_, stroke, color, 1.0);
+}
+
+void Canvas::vertical_text(const Eigen::Vector2d& at, const std::string& text, double size, Color color) {
+    agg::gsv_text glyphs;
+    glyphs.flip(true);
+    glyphs.size(size);
+    glyphs.start_point(-0.5 * text_width(text, size), 0.0);
+    glyphs.text(text.c_str());
+    agg::trans_affine upwards =
+        agg::trans_affine_rotation(-0.5 * agg::pi) * agg::trans_affine_translation(at.x() + kCentre, at.y() + kCentre);
+    agg::conv_transform<agg::gsv_text> turned(glyphs, upwards);
+    agg::conv_stroke<agg::conv_transform<agg::gsv_text>> stroke(turned);
     stroke.width(size / 7.5);
     stroke.line_join(agg::round_join);
     stroke.line_cap(agg::round_cap);

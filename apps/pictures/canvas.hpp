@@ -30,6 +30,8 @@ class Canvas {
     void disc(const Eigen::Vector2d& centre, double radius, Color color);
     // ASCII text whose baseline runs through `at`; `size` is the height of capitals [pixels].
     void text(const Eigen::Vector2d& at, const std::string& text, double size, Color color, Align align = Align::kLeft);
+    // Reads upwards; `at` is the middle of its baseline.
+    void vertical_text(const Eigen::Vector2d& at, const std::string& text, double size, Color color);
     static double text_width(const std::string& text, double size);
 
     // Throws std::runtime_error naming the file.

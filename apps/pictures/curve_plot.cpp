@@ -16,7 +16,7 @@ using evaluation::Curve;
 using evaluation::CurveBin;
 
 constexpr int kWidth = 900;
-constexpr double kLeft = 92.0, kRight = 876.0;
+constexpr double kLeft = 104.0, kRight = 866.0;
 constexpr double kTitleHeight = 44.0, kPanelHeight = 260.0, kFootHeight = 62.0;
 constexpr double kPlotHeight = kTitleHeight + kPanelHeight + kFootHeight;
 constexpr double kTextSize = 11.0, kTitleSize = 13.0;
@@ -51,12 +51,9 @@ Axis x_axis(const CurvePlot& plot) {
             high = std::max(high, bin.x);
         }
     }
-    if (!(high > low)) {  // a single place: in the middle
-        const double margin = std::max(std::abs(low) * 0.1, 1e-6);
-        return round_axis(plot.x_logarithmic ? low / 2.0 : low - margin, plot.x_logarithmic ? 2.0 * low : low + margin,
-                          2, plot.x_logarithmic);
-    }
-    return round_axis(low, high, 10, plot.x_logarithmic);
+    if (plot.x_logarithmic) return ratio_axis(low, high);
+    const double margin = high > low ? 0.0 : std::max(std::abs(low) * 0.1, 1e-6);  // a single place: in the middle
+    return round_axis(low - margin, high + margin, 10);
 }
 
 Panel panel_of(const CurvePlot& plot, double top) {
@@ -165,8 +162,7 @@ void draw_plot(Canvas& canvas, const CurvePlot& plot, double top) {
     const Panel panel = panel_of(plot, top);
     canvas.text({kLeft, top + 26.0}, plot.title, kTitleSize, kInk);
     draw_axes(canvas, panel);
-    // The title of the y axis stands above it at the right: text is not turned.
-    canvas.text({kRight, top + 26.0}, plot.y_title, kTextSize, kInk, Align::kRight);
+    canvas.vertical_text({30.0, 0.5 * (panel.top + panel.bottom)}, plot.y_title, kTextSize, kInk);
     canvas.text({0.5 * (kLeft + kRight), panel.bottom + 44.0}, plot.x_title, kTextSize, kInk, Align::kCentre);
     if (plot.is_share_of_share) canvas.polyline({panel.at(0.0, 0.0), panel.at(1.0, 1.0)}, 1.4, kFrame);
     for (std::size_t i = 0; i < plot.curves.size(); ++i) draw_band(canvas, panel, plot.curves[i], color_of(i));
