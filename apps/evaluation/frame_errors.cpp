@@ -82,12 +82,16 @@ double add_s_m(const Pose& estimate, const Pose& truth, const ModelShape& shape)
     const std::vector<Eigen::Vector3d> seen = moved(estimate.inverse() * truth, shape.vertices_in_object_m);
     std::vector<Eigen::Vector3f> queries;
     queries.reserve(seen.size());
-    for (const Eigen::Vector3d& point : seen) queries.emplace_back(point.cast<float>());
+    for (const Eigen::Vector3d& point : seen) {
+        // Beyond, where the squares of floats end, all vertices are as far.
+        constexpr double kFar_m = 1e6;
+        queries.emplace_back(point.norm() < kFar_m ? Eigen::Vector3f(point.cast<float>())
+                                                   : Eigen::Vector3f(0.0F, 0.0F, 0.0F));
+    }
     const std::vector<PointIndex::Neighbour> nearest = shape.vertex_index->nearest(queries);
     double sum_m = 0.0;
     for (std::size_t i = 0; i < seen.size(); ++i) {
-        const int index = std::max(nearest[i].index, 0);  // -1 where a float cannot square the distance: all are as far
-        sum_m += (seen[i] - shape.vertices_in_object_m[static_cast<std::size_t>(index)]).norm();
+        sum_m += (seen[i] - shape.vertices_in_object_m[static_cast<std::size_t>(nearest[i].index)]).norm();
     }
     return sum_m / static_cast<double>(seen.size());
 }
@@ -122,10 +126,9 @@ double least_largest(const std::vector<Eigen::Vector3d>& vertices, const std::ve
 
 // difference^T covariance^-1 difference; nothing where the covariance is not positive definite.
 std::optional<double> squared_distance(const Eigen::VectorXd& difference, const Eigen::MatrixXd& covariance) {
-    const Eigen::VectorXd sigmas = covariance.diagonal().cwiseSqrt();
-    if (!(sigmas.minCoeff() > 0.0) || !covariance.allFinite()) return std::nullopt;
+    if (!covariance.allFinite() || !(covariance.diagonal().minCoeff() > 0.0)) return std::nullopt;
     // In units of the standard deviations: radians and metres differ by orders of magnitude.
-    const Eigen::VectorXd scale = sigmas.cwiseInverse();
+    const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
     const Eigen::LDLT<Eigen::MatrixXd> factors(scale.asDiagonal() * covariance * scale.asDiagonal());
     constexpr double kLeastPivot = 1e-12;
     if (factors.info() != Eigen::Success || !(factors.vectorD().minCoeff() > kLeastPivot)) return std::nullopt;

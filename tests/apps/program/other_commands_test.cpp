@@ -1,9 +1,8 @@
-// render, evaluate and import, run as a user would.
+// render and import, run as a user would.
 #include <gtest/gtest.h>
 
 #include "apps/data_set/bop_models.hpp"
 #include "apps/data_set/png_file.hpp"
-#include "apps/data_set/result_csv.hpp"
 #include "tests/apps/program/tiny_scene.hpp"
 
 namespace nearpose::program_tests {
@@ -48,53 +47,6 @@ TEST(Render, SaysWhatIsWrong) {
     const Outcome behind = run_nearpose(render(scene, "behind.json"));
     EXPECT_EQ(behind.exit_code, 0);
     EXPECT_TRUE(contains(behind.err, "not in view")) << behind.err;
-}
-
-std::string evaluate(const TinyScene& scene) {
-    return "evaluate --scene " + scene.scene().string() + " --models " + scene.models().string() +
-           " --object 1 --burn-in 0 --results " + scene.file("poses.csv").string() + " ";
-}
-
-// Writes the true poses, each moved by `offset` along the camera's x axis; frame 1 is left out.
-void write_results(const TinyScene& scene, int scene_id, double offset_m) {
-    data_set::PoseCsvWriter writer(scene.file("poses.csv"));
-    for (const int frame : {0, 2, 3}) {
-        Pose pose = scene.truth()[frame];
-        pose.translation.x() += offset_m;
-        writer.append({scene_id, frame, 1, 0.9, pose, 0.01});
-    }
-    writer.close();
-}
-
-TEST(Evaluate, MeasuresWhatWasPutIn) {
-    const TinyScene scene(4);
-    write_results(scene, 7, 0.002);
-    const Outcome outcome = run_nearpose(evaluate(scene) + "--out " + scene.file("table.csv").string() + " --plot " +
-                                         scene.file("error.png").string());
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_TRUE(contains(outcome.out, "4 frames, 1 without a pose")) << outcome.out;
-    EXPECT_TRUE(contains(outcome.out, "translation [mm]       2.000     2.000     2.000     2.000")) << outcome.out;
-    EXPECT_TRUE(contains(outcome.out, "first in frame 0, for good from frame 2 on")) << outcome.out;
-    EXPECT_EQ(lines_of(read_text(scene.file("table.csv")))[1], "0,2.0000,0.0000");
-    EXPECT_EQ(lines_of(read_text(scene.file("table.csv")))[2], "1,,");
-    EXPECT_EQ(data_set::read_png_size(scene.file("error.png")).width, 1000);
-    EXPECT_EQ(run_nearpose(evaluate(scene) + "--out -").out, read_text(scene.file("table.csv")));
-}
-
-TEST(Evaluate, SaysWhatIsWrong) {
-    const TinyScene scene(4);
-    write_results(scene, 8, 0.0);
-    const Outcome other = run_nearpose(evaluate(scene));
-    EXPECT_EQ(other.exit_code, 1);
-    EXPECT_TRUE(contains(other.err, "no row of scene 7, but of scene 8")) << other.err;
-    EXPECT_EQ(run_nearpose(evaluate(scene) + "--scene-id 8").exit_code, 0);
-    write_text(scene.file("poses.csv"), "scene_id,im_id,obj_id,score,R,t,time\n7,0,1,nan,1 0 0 0 1 0 0 0 1,0 0 1,1\n");
-    EXPECT_EQ(run_nearpose(evaluate(scene)).exit_code, 1);
-    write_results(scene, 7, 0.0);
-    std::filesystem::remove(scene.scene() / "scene_gt.json");
-    const Outcome no_truth = run_nearpose(evaluate(scene));
-    EXPECT_EQ(no_truth.exit_code, 1);
-    EXPECT_TRUE(contains(no_truth.err, "scene_gt.json")) << no_truth.err;
 }
 
 TEST(Import, AModelBecomesABopModel) {

@@ -1,0 +1,90 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "apps/evaluation/frame_errors.hpp"
+#include "tests/apps/data_set/test_files.hpp"
+
+namespace nearpose::evaluation {
+namespace {
+
+using data_set::testing_files::expect_error;
+using data_set::testing_files::new_folder;
+using data_set::testing_files::write_text;
+
+// One frame with everything, one without anything.
+std::vector<FrameErrors> two_frames() {
+    FrameErrors full;
+    full.frame_id = 3;
+    full.visibility = Visibility{0.4, 2e-6, 0.75};
+    full.score = 0.9;
+    full.time_s = 0.025;
+    full.predicted = true;
+    full.errors.emplace();
+    PoseErrors& errors = *full.errors;
+    errors.translation_in_camera_m = {-0.001, 0.002, -0.0025};
+    errors.rotation_in_camera_rad = {0.01, -0.02, 0.03};
+    errors.translation_m = errors.translation_in_camera_m.norm();
+    errors.rotation_rad = errors.rotation_in_camera_rad.norm();
+    errors.add_m = 0.004;
+    errors.add_s_m = 0.003;
+    errors.mssd_m = 0.007;
+    errors.mspd_px = 12.5;
+    errors.mahalanobis_squared = 6.25;
+    errors.mahalanobis_translation_squared = 2.5;
+    FrameErrors empty;
+    empty.frame_id = 4;
+    return {full, empty};
+}
+
+TEST(FrameTable, GivesBackWhatWasWritten) {
+    const std::string table = table_of(two_frames());
+    EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
+    const std::vector<FrameErrors> read = read_table(write_text(new_folder() / "table.csv", table));
+    ASSERT_EQ(read.size(), 2U);
+    EXPECT_EQ(table_of(read), table);
+    const FrameErrors &full = read[0], written = two_frames()[0];
+    EXPECT_TRUE(full.predicted);
+    EXPECT_NEAR(full.errors->rotation_rad, written.errors->rotation_rad, 1e-9);
+    EXPECT_NEAR(full.errors->translation_in_camera_m.z(), -0.0025, 1e-11);
+    EXPECT_DOUBLE_EQ(full.errors->mahalanobis_squared.value(), 6.25);
+    EXPECT_FALSE(full.errors->mahalanobis_rotation_squared.has_value());
+    EXPECT_NEAR(full.time_s, 0.025, 1e-12);
+    EXPECT_NEAR(full.visibility->visible_volume_m3, 2e-6, 1e-17);
+    EXPECT_DOUBLE_EQ(full.visibility->visible_fraction.value(), 0.75);
+    EXPECT_FALSE(read[1].errors || read[1].visibility || read[1].predicted);
+    EXPECT_LT(read[1].time_s, 0.0);
+}
+
+TEST(FrameTable, NoFramesAreATableToo) {
+    EXPECT_TRUE(read_table(write_text(new_folder() / "table.csv", table_of({}))).empty());
+}
+
+TEST(FrameTable, SaysWhereItIsBroken) {
+    const auto path = new_folder() / "table.csv";
+    const std::string table = table_of(two_frames());
+    const auto with = [&](const std::string& from, const std::string& to) {
+        std::string text = table;
+        text.replace(text.find(from), from.size(), to);
+        return text;
+    };
+    const auto expect = [&](const std::string& text, const std::vector<std::string>& parts) {
+        write_text(path, text);
+        std::vector<std::string> all = parts;
+        all.push_back("table.csv");
+        expect_error([&] { read_table(path); }, all);
+    };
+    expect("", {"empty"});
+    expect("im_id,error\n1,2\n", {"line 1", "header"});
+    expect(with("12.50000000", "much"), {"line 2", "mspd_px", "much"});
+    expect(with("12.50000000", "nan"), {"line 2", "mspd_px"});
+    expect(with("12.50000000", ""), {"line 2", "mspd_px", "is empty"});
+    expect(with("3,1,", "3.5,1,"), {"line 2", "im_id", "3.5"});
+    expect(with("3,1,", "3,2,"), {"line 2", "predicted"});
+    expect(with("4,0,,,", "4,0,,7,"), {"line 3", "rotation_error_deg"});
+    expect(table.substr(0, table.size() - 5), {"line 3", "columns"});
+    expect_error([&] { read_table(path.parent_path() / "none.csv"); }, {"none.csv"});
+}
+
+}  // namespace
+}  // namespace nearpose::evaluation
