@@ -23,13 +23,14 @@ struct Tally {
     int frames = 0, unread = 0, seen = 0;
 };
 
-PoseEstimator make_estimator(const EstimateOptions& options, const Mesh& mesh) {
-    EstimatorOptions estimator;
-    estimator.method = make_method(options.method);
-    estimator.num_particles = options.particles;
-    estimator.num_threads = options.threads;
-    estimator.seed = options.seed;
-    PoseEstimator made(make_view_generator(options.views, mesh), make_solver(options.method), estimator);
+PoseEstimator start_estimator(const EstimateOptions& options, const Mesh& mesh) {
+    EstimatorSetup setup;
+    setup.method = options.method;
+    setup.views = options.views;
+    setup.particles = options.particles;
+    setup.threads = options.threads;
+    setup.seed = options.seed;
+    PoseEstimator made = make_estimator(setup, make_view_generator(setup, mesh));
     if (!options.initial_pose.empty()) {
         made.reset(read_pose_file(options.initial_pose),
                    {options.initial_sigma_deg * std::numbers::pi / 180.0, 1e-3 * options.initial_sigma_mm});
@@ -142,7 +143,7 @@ int estimate(const EstimateOptions& given, const SharedOptions& shared) {
     const std::unique_ptr<FrameSource> source = open_source(options);
     check_motion(options, *source);
     const Mesh mesh = load_model(options.model, shared);
-    PoseEstimator estimator = make_estimator(options, mesh);
+    PoseEstimator estimator = start_estimator(options, mesh);
     EstimateOutputs outputs(options.outputs, describe(options, *source), mesh);
     if (!options.outputs.run.empty()) write_run_record(options.outputs.run, options, source->scene_id());
     if (!source->notice().empty()) print_notice(source->notice(), shared.quiet);

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "core/check.hpp"
 #include "optim/ceres_pose_solver.hpp"
 #include "raycast/embree_view_generator.hpp"
 #include "raycast/raster_view_generator.hpp"
@@ -19,27 +20,72 @@ const std::vector<std::string>& method_names() {
     return names;
 }
 
-std::shared_ptr<const ViewGenerator> make_view_generator(const std::string& views, const Mesh& mesh) {
-    if (views == "raycast") return std::make_shared<EmbreeViewGenerator>(mesh);
-    if (views == "raster") return std::make_shared<RasterViewGenerator>(mesh);
-    if (views == "sphere") return std::make_shared<SphereViewGenerator>(mesh);
-    throw std::invalid_argument("views '" + views + "': take raycast, raster or sphere");
+const std::vector<std::string>& residual_names() {
+    static const std::vector<std::string> names = {"point", "plane"};
+    return names;
 }
 
-Method make_method(const std::string& method) {
-    if (method == "default") return method_default();
-    if (method == "paper") return method_paper();
-    throw std::invalid_argument("method '" + method + "': take default or paper");
-}
-
-std::shared_ptr<const PoseSolver> make_solver(const std::string& method) {
-    CeresSolverOptions options;
-    if (method == "paper") {
-        options.residual = ResidualKind::kPointToPoint;
-        options.loss = RobustLoss::kNone;
-        options.min_pairs = 3;
+std::shared_ptr<const ViewGenerator> make_view_generator(const EstimatorSetup& setup, const Mesh& mesh) {
+    if (setup.view_samples && setup.views != "raster") {
+        throw std::invalid_argument("samples of the surface belong to the views raster, not " + setup.views);
     }
+    if (setup.views == "raycast") return std::make_shared<EmbreeViewGenerator>(mesh);
+    if (setup.views == "sphere") return std::make_shared<SphereViewGenerator>(mesh);
+    if (setup.views != "raster") {
+        throw std::invalid_argument("views '" + setup.views + "': take raycast, raster or sphere");
+    }
+    RasterOptions options;
+    if (setup.view_samples) options.num_samples = *setup.view_samples;
+    check_option("samples of the surface", options.num_samples, 1, 1e8);
+    return std::make_shared<RasterViewGenerator>(mesh, options);
+}
+
+Method make_method(const EstimatorSetup& setup) {
+    if (setup.method != "default" && setup.method != "paper") {
+        throw std::invalid_argument("method '" + setup.method + "': take default or paper");
+    }
+    Method method = setup.method == "paper" ? method_paper() : method_default();
+    if (setup.rounds) {
+        check_option("rounds", *setup.rounds, 1, 100);
+        method.step.rounds = *setup.rounds;
+    }
+    if (setup.consensus_draws) method.step.consensus_draws = *setup.consensus_draws;
+    if (setup.overlap) {
+        if (method.cost != Cost::kOverlapMse) throw std::invalid_argument("overlap belongs to the method paper");
+        method.scale_by_overlap = *setup.overlap;
+    }
+    if (!setup.gradient) {
+        if (setup.rounds || setup.residual) {
+            throw std::invalid_argument("rounds and residual are of the gradient step, which is off");
+        }
+        method.step.rounds = 0;
+        method.start_step.rounds = 0;
+        method.refinement.modes = 0;
+    }
+    validate(method);
+    return method;
+}
+
+std::shared_ptr<const PoseSolver> make_solver(const EstimatorSetup& setup) {
+    const bool paper = setup.method == "paper";
+    const std::string residual = setup.residual.value_or(paper ? "point" : "plane");
+    if (residual != "point" && residual != "plane") {
+        throw std::invalid_argument("residual '" + residual + "': take point or plane");
+    }
+    CeresSolverOptions options;
+    options.residual = residual == "point" ? ResidualKind::kPointToPoint : ResidualKind::kPointToPlane;
+    if (paper) options.loss = RobustLoss::kNone;
+    if (paper && residual == "point") options.min_pairs = 3;
     return std::make_shared<CeresPoseSolver>(options);
+}
+
+PoseEstimator make_estimator(const EstimatorSetup& setup, std::shared_ptr<const ViewGenerator> views) {
+    EstimatorOptions options;
+    options.method = make_method(setup);
+    options.num_particles = setup.particles;
+    options.num_threads = setup.threads;
+    options.seed = setup.seed;
+    return PoseEstimator(std::move(views), make_solver(setup), options);
 }
 
 }  // namespace nearpose::program

@@ -1,10 +1,12 @@
-// The parts of an estimator by the names that users give them.
+// An estimator by the names and numbers that users give.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/estimator.hpp"
 #include "core/method.hpp"
 #include "core/pose_solver.hpp"
 #include "core/view_generator.hpp"
@@ -17,11 +19,38 @@ namespace nearpose::program {
 const std::vector<std::string>& view_names();
 // "default" and "paper".
 const std::vector<std::string>& method_names();
+// "point": point to point; "plane": point to plane.
+const std::vector<std::string>& residual_names();
 
-// All throw std::invalid_argument for a name that is not among these.
-std::shared_ptr<const ViewGenerator> make_view_generator(const std::string& views, const Mesh& mesh);
-Method make_method(const std::string& method);
+struct EstimatorSetup {
+    std::string method = "default";
+    std::string views = "raycast";
+    int particles = EstimatorOptions{}.num_particles;
+    int threads = EstimatorOptions{}.num_threads;
+    std::uint64_t seed = EstimatorOptions{}.seed;
+
+    // Where they differ from the method. All are of the particles' step; the default method's start and refinement
+    // keep their own rounds and take no sample consensus.
+    std::optional<int> rounds;            // at least 1
+    std::optional<int> consensus_draws;   // 0: no sample consensus
+    std::optional<bool> overlap;          // the paper's cost alone: scaled by m / n, or the plain mean squared error
+    std::optional<std::string> residual;  // of every solve
+    bool gradient = true;  // false: nothing is ever solved, poses stay where diffusion puts them; nor is there a
+                           // refinement of modes, which is nothing but solves
+    std::optional<int> view_samples;  // of the surface; "raster" alone
+
+    // For whoever feeds the estimator.
+    bool use_mask = true;
+    bool use_control = true;  // the measured motion of the camera
+};
+
+// All throw std::invalid_argument for a name that is not among these, a number out of bounds, and what does not go
+// together.
+std::shared_ptr<const ViewGenerator> make_view_generator(const EstimatorSetup& setup, const Mesh& mesh);
+Method make_method(const EstimatorSetup& setup);
 // Point to plane with a robust loss; for the paper's method point to point without one.
-std::shared_ptr<const PoseSolver> make_solver(const std::string& method);
+std::shared_ptr<const PoseSolver> make_solver(const EstimatorSetup& setup);
+// `views` is what make_view_generator gave; several estimators may share it.
+PoseEstimator make_estimator(const EstimatorSetup& setup, std::shared_ptr<const ViewGenerator> views);
 
 }  // namespace nearpose::program

@@ -273,7 +273,10 @@ StepContext PoseEstimator::context_for(const Observation& observation, const Obs
                                        const GradientStep& step) const {
     PixelCostOptions pixel_cost = options_.method.pixel_cost;
     pixel_cost.extra_sigma_m = step.extra_sigma_diameters * views_->extent().diameter_m();
-    return {*views_, *solver_, observation, observed, step, options_.method.cost, pixel_cost};
+    return {*views_,     *solver_,
+            observation, observed,
+            step,        options_.method.cost,
+            pixel_cost,  options_.method.scale_by_overlap};
 }
 
 // Views are cast where the object may be: around the segmented pixels, or around the tracked pose, or everywhere.

@@ -77,7 +77,9 @@ void weigh_by_overlap(const Correspondences& pairs, std::size_t num_view_points,
     const Timer timer(moved.seconds.likelihood);
     const double gate_m = context.step.max_distance_diameters * context.views.extent().diameter_m();
     const double sensor_m = context.observation.sensor().sigma_m(context.observation.mean_distance_m());
-    moved.cost = overlap_scaled_mse(pairs, moved.camera_from_object, num_view_points, gate_m);
+    // As if the pairs were the whole view, m / n is 1.
+    const std::size_t m = context.scale_by_overlap ? num_view_points : pairs.size();
+    moved.cost = overlap_scaled_mse(pairs, moved.camera_from_object, m, gate_m);
     moved.negative_log_likelihood = negative_log_likelihood(moved.cost, sensor_m, gate_m);
 }
 
@@ -111,6 +113,8 @@ MovedParticle move_particle(const Pose& camera_from_object, const StepContext& c
         pairs = find_pairs(view, context, random, moved);
         solve(pairs, context, moved);
     }
+    // Without a step there are no pairs yet, and the overlap cost is of pairs.
+    if (context.step.rounds == 0 && context.cost == Cost::kOverlapMse) pairs = find_pairs(view, context, random, moved);
     if (context.cost == Cost::kPixels)
         weigh_by_pixels(context, context.pixel_cost, moved);
     else
@@ -132,7 +136,7 @@ MovedParticle refine_mode(const Pose& camera_from_object, const StepContext& con
         constexpr double kGateSigmas = 5.0;
         step.max_distance_diameters = kGateSigmas * (step.extra_sigma_diameters + sensor_m / diameter_m);
         const StepContext sharper{context.views, context.solver, context.observation, context.observed,
-                                  step,          context.cost,   context.pixel_cost};
+                                  step,          context.cost,   context.pixel_cost,  context.scale_by_overlap};
         solve(find_pairs(cast(moved.camera_from_object, context, moved), sharper, unused, moved), sharper, moved);
         step.extra_sigma_diameters *= 0.5;
     }

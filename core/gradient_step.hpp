@@ -49,6 +49,7 @@ struct StepContext {
     const GradientStep& step;
     Cost cost = Cost::kPixels;
     PixelCostOptions pixel_cost;
+    bool scale_by_overlap = true;  // as in Method
 };
 
 // The paper's inner loop: generate the view at the pose, then `rounds` times associate, reject, solve and move by gamma

@@ -19,7 +19,7 @@ struct GradientStep {
     double max_normal_angle_rad = 0.0;    // between a pair's normals; 0: not checked
     int consensus_draws = 0;              // of the sample-consensus rejection; 0: none
     double consensus_distance_diameters = 0.02;
-    int rounds = 3;
+    int rounds = 3;          // 0: the pose is weighed where it is
     double step_size = 1.0;  // gamma: the fraction of each solve that is taken, along the geodesic
     int max_rays = 768;      // of the view
 };
@@ -45,6 +45,7 @@ struct Method {
     GradientStep start_step;   // taken by each of them
     GradientStep step;         // taken by each particle in each frame
     Cost cost = Cost::kPixels;
+    bool scale_by_overlap = true;  // of kOverlapMse: times m / n; false: the plain mean squared error of the pairs
     PixelCostOptions pixel_cost;
     Refinement refinement;
     double diffusion_rotation_rad = 0.03;

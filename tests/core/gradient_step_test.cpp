@@ -87,6 +87,37 @@ TEST_F(GradientStepTest, CountsAddUp) {
     EXPECT_LT(moved.counts.rejected_by_normal + moved.counts.rejected_by_consensus, moved.counts.pairs);
 }
 
+// m / n is the ratio of the view's points to the pairs that are left.
+TEST_F(GradientStepTest, TheOverlapScalesTheMeanSquaredError) {
+    GradientStep step;
+    step.association = Association::kNearest;
+    step.rounds = 1;
+    step.consensus_draws = 10;
+    const StepContext scaled = context(step, Cost::kOverlapMse);
+    StepContext plain = context(step, Cost::kOverlapMse);
+    plain.scale_by_overlap = false;
+    const Pose start = off(0.05, 0.01);
+    const MovedParticle with = move_particle(start, scaled, kRandom), without = move_particle(start, plain, kRandom);
+    const long left = with.counts.pairs - with.counts.rejected_by_consensus;
+    ASSERT_LT(left, with.counts.view_points);
+    EXPECT_EQ(distance_m(with.camera_from_object, without.camera_from_object), 0.0);
+    const double ratio = static_cast<double>(with.counts.view_points) / static_cast<double>(left);
+    EXPECT_NEAR(with.cost / without.cost, ratio, 1e-9 * ratio);
+}
+
+TEST_F(GradientStepTest, WithoutRoundsThePoseStaysAndIsWeighed) {
+    GradientStep still;
+    still.rounds = 0;
+    still.association = Association::kNearest;
+    const Pose near = off(0.02, 0.002), far = off(0.06, 0.02);
+    for (const Cost cost : {Cost::kPixels, Cost::kOverlapMse}) {
+        const MovedParticle at_near = move_particle(near, context(still, cost), kRandom);
+        EXPECT_EQ(log(near.inverse() * at_near.camera_from_object).norm(), 0.0);
+        EXPECT_EQ(at_near.counts.solves, 0);
+        EXPECT_LT(at_near.cost, move_particle(far, context(still, cost), kRandom).cost);
+    }
+}
+
 TEST_F(GradientStepTest, ObjectOutOfViewIsTooFewPairsAndKeepsThePose) {
     Pose away = kTruth;
     away.translation.x() += 5.0;

@@ -20,11 +20,12 @@ std::vector<evaluation::FrameErrors> run_scene(const std::filesystem::path& scen
     const data_set::ModelInfo info = data_set::read_model_info(models, kObject);
     const auto truth = data_set::read_ground_truth(scene, kObject);
     const auto source = program::open_bop_source(scene, {}, {run.with_masks, kObject, std::nullopt});
-    EstimatorOptions options;
-    options.method = program::make_method(run.method);
-    options.num_particles = run.particles;
-    options.seed = run.seed;
-    PoseEstimator estimator(program::make_view_generator(run.views, mesh), program::make_solver(run.method), options);
+    program::EstimatorSetup setup;
+    setup.method = run.method;
+    setup.views = run.views;
+    setup.particles = run.particles;
+    setup.seed = run.seed;
+    PoseEstimator estimator = program::make_estimator(setup, program::make_view_generator(setup, mesh));
     std::vector<evaluation::FrameErrors> errors;
     std::optional<Pose> camera_from_world_before;
     for (std::size_t k = 0; k < source->frames().size(); ++k) {
