@@ -1,0 +1,11 @@
+// What comparisons draw random numbers for: addresses of their streams beside the simulation's.
+#pragma once
+
+#include "core/random.hpp"
+
+namespace nearpose::compare {
+
+inline constexpr auto kLineOfSightDraw = static_cast<RandomPurpose>(200);  // the aimed point and the line of sight
+inline constexpr auto kTimedViewDraw = static_cast<RandomPurpose>(201);    // poses around the true one
+
+}  // namespace nearpose::compare
