@@ -5,7 +5,6 @@
 
 namespace nearpose::compare {
 
-inline constexpr auto kLineOfSightDraw = static_cast<RandomPurpose>(200);  // the aimed point and the line of sight
-inline constexpr auto kTimedViewDraw = static_cast<RandomPurpose>(201);    // poses around the true one
+inline constexpr auto kTimedViewDraw = static_cast<RandomPurpose>(200);  // poses around the true one
 
 }  // namespace nearpose::compare

@@ -5,7 +5,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "apps/compare/line_of_sight.hpp"
+#include "apps/compare/nested_spheres_generator.hpp"
+#include "apps/simulate/surface_points.hpp"
 #include "core/check.hpp"
 #include "raycast/embree_view_generator.hpp"
 #include "raycast/raster_view_generator.hpp"
@@ -31,14 +32,23 @@ double area_of(const Mesh& mesh) {
     return 0.5 * doubled;
 }
 
+// Radii of the nested spheres [diameters]: from as close as a sphere around the whole object can be, in steps of ratio
+// 1.5, so that no camera between is off by more than 1.22.
+constexpr double kRadii[] = {0.6, 0.9, 1.35, 2.0};
+
 }  // namespace
 
+const std::vector<std::string>& compared_views() {
+    static const std::vector<std::string> names = {"raycast", "raster", "sphere", "spheres"};
+    return names;
+}
+
 void validate(const ViewCell& cell) {
-    if (cell.views != "raycast" && cell.views != "raster" && cell.views != "sphere") {
-        throw std::invalid_argument("views '" + cell.views + "': take raycast, raster or sphere");
+    if (std::find(compared_views().begin(), compared_views().end(), cell.views) == compared_views().end()) {
+        throw std::invalid_argument("views '" + cell.views + "': take raycast, raster, sphere or spheres");
     }
     check_option("view_samples", cell.view_samples, 1, 1e7);
-    check_option("distance_mm", cell.distance_mm, 1.0, 1e5);
+    check_option("distance_mm", cell.distance_mm, 10.0, 1e5);
     check_option("max_rays", cell.max_rays, 1, 1e7);
     check_option("viewpoints", cell.viewpoints, 1, 1e5);
     check_option("sphere_radius_diameters", cell.sphere_radius_diameters, 0.51, 100.0);
@@ -46,41 +56,58 @@ void validate(const ViewCell& cell) {
 }
 
 ViewBench::ViewBench(const Mesh& mesh, const simulate::Part& part, const PinholeCamera& image_camera)
-    : mesh_(clean(mesh, "mesh")), part_(part), image_camera_(image_camera), truth_(mesh_), area_m2_(area_of(mesh_)) {}
+    : mesh_(clean(mesh, "mesh")), part_(part), image_camera_(image_camera), truth_(mesh_), area_m2_(area_of(mesh_)) {
+    // As recordings of the sweep scenario do, so that seeds mean the same lines of sight.
+    if (part_.surface_points_in_object_m.empty()) {
+        part_.surface_points_in_object_m = simulate::surface_points_from_above(mesh_);
+    }
+}
 
-int ViewBench::sphere_image_size(const ViewCell& cell) const {
+int ViewBench::sphere_image_size(int view_samples, double radius_diameters) const {
     // A pixel of a stored image, on a surface at the object's centre that faces the camera, has the side
     // 2 * slope * radius / size; slope is the tangent of half the angle under which the whole object is seen.
-    const double radius_m = cell.sphere_radius_diameters * truth_.extent().diameter_m();
-    const double sine = 0.5 / cell.sphere_radius_diameters;
+    const double radius_m = radius_diameters * truth_.extent().diameter_m();
+    const double sine = 0.5 / radius_diameters;
     const double slope = sine / std::sqrt(1.0 - sine * sine);
-    const double pixel_m = std::sqrt(area_m2_ / cell.view_samples);
+    const double pixel_m = std::sqrt(area_m2_ / view_samples);
     return std::clamp(static_cast<int>(std::lround(2.0 * slope * radius_m / pixel_m)), 2, 1024);
+}
+
+std::shared_ptr<const ViewGenerator> ViewBench::make_generator(const ViewCell& cell) const {
+    const auto sphere = [&](double radius) {
+        return SphereOptions{cell.viewpoints, radius, sphere_image_size(cell.view_samples, radius)};
+    };
+    if (cell.views == "raster") {
+        return std::make_shared<RasterViewGenerator>(mesh_, RasterOptions{cell.view_samples, 1});
+    }
+    if (cell.views == "sphere") {
+        return std::make_shared<SphereViewGenerator>(mesh_, sphere(cell.sphere_radius_diameters));
+    }
+    if (cell.views == "spheres") {
+        std::vector<SphereOptions> spheres;
+        for (const double radius : kRadii) spheres.push_back(sphere(radius));
+        return std::make_shared<NestedSpheresGenerator>(mesh_, spheres);
+    }
+    return std::make_shared<EmbreeViewGenerator>(mesh_);
 }
 
 std::shared_ptr<const ViewGenerator> ViewBench::generator(const ViewCell& cell) const {
     Key key{cell.views, 0, 0, 0.0};
-    if (cell.views == "raster") key = {cell.views, cell.view_samples, 0, 0.0};
-    if (cell.views == "sphere") {
-        key = {cell.views, sphere_image_size(cell), cell.viewpoints, cell.sphere_radius_diameters};
-    }
-    const std::lock_guard lock(mutex_);
+    if (cell.views != "raycast") std::get<1>(key) = cell.view_samples;
+    if (cell.views == "sphere" || cell.views == "spheres") std::get<2>(key) = cell.viewpoints;
+    if (cell.views == "sphere") std::get<3>(key) = cell.sphere_radius_diameters;
+    const std::lock_guard lock(mutex_);  // a second thread waits rather than builds the same
     auto& slot = generators_[key];
-    if (slot) return slot;
-    if (cell.views == "raster") {
-        slot = std::make_shared<RasterViewGenerator>(mesh_, RasterOptions{cell.view_samples, 1});
-    } else if (cell.views == "sphere") {
-        const SphereOptions options{cell.viewpoints, cell.sphere_radius_diameters, sphere_image_size(cell)};
-        slot = std::make_shared<SphereViewGenerator>(mesh_, options);
-    } else {
-        slot = std::make_shared<EmbreeViewGenerator>(mesh_);
-    }
+    if (!slot) slot = make_generator(cell);
     return slot;
 }
 
 ViewQuality ViewBench::quality(const ViewCell& cell) const {
     validate(cell);
-    const Pose pose = pose_at(draw_line_of_sight(truth_, part_, cell.seed), 1e-3 * cell.distance_mm);
+    simulate::ScenarioOptions at_distance;
+    at_distance.far_m = at_distance.near_m = 1e-3 * cell.distance_mm;
+    const Pose pose = simulate::task_path(simulate::Scenario::kSweep, part_, image_camera_, 1, cell.seed, at_distance)
+                          .camera_from_object.front();
     const ViewTask task{image_camera_, cell.max_rays, cell.timed_views};
     return view_quality(*generator(cell), truth_, task, {&pose, 1});
 }

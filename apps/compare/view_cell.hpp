@@ -15,16 +15,20 @@
 
 namespace nearpose::compare {
 
+// "raycast", "raster", "sphere": the program's three; "spheres": stored views from several radii.
+const std::vector<std::string>& compared_views();
+
+// The camera looks at a point of the upper face from the sweep scenario's line of sight.
 struct ViewCell {
-    std::string views = "raycast";  // "raycast", "raster", "sphere"
-    // Of the rasteriser, on the whole surface. The view sphere's stored images get the resolution that puts as many
+    std::string views = "raycast";
+    // Of the rasteriser, on the whole surface. The images that view spheres store get the resolution that puts as many
     // points on a square metre that faces the camera; ray casting has no samples.
     int view_samples = 20000;
     double distance_mm = 400.0;  // of the camera from the aimed point of the surface
+    std::uint64_t seed = 1;      // of the line of sight: the same as that of a sweep of this seed
     int max_rays = 64 * 48;
-    int viewpoints = 642;                  // of the view sphere
-    double sphere_radius_diameters = 2.0;  // of its viewpoints
-    std::uint64_t seed = 1;                // of the line of sight
+    int viewpoints = 642;                  // of each view sphere
+    double sphere_radius_diameters = 2.0;  // of "sphere"
     int timed_views = 200;
 };
 
@@ -49,12 +53,13 @@ class ViewBench {
     // last three only where the time was taken, and none for a line of sight that meets nothing.
     std::vector<NamedNumber> numbers(const ViewCell& cell) const;
 
-    // Side of the stored images that are as dense as `view_samples` samples of the surface [pixels].
-    int sphere_image_size(const ViewCell& cell) const;
+    // Side of the images that a sphere of this radius stores to be as dense as `view_samples` of the surface [pixels].
+    int sphere_image_size(int view_samples, double radius_diameters) const;
 
   private:
-    using Key = std::tuple<std::string, int, int, double>;  // views, samples or image size, viewpoints, radius
+    using Key = std::tuple<std::string, int, int, double>;  // views, samples, viewpoints, radius; 0 where it has none
     std::shared_ptr<const ViewGenerator> generator(const ViewCell& cell) const;
+    std::shared_ptr<const ViewGenerator> make_generator(const ViewCell& cell) const;
 
     Mesh mesh_;
     simulate::Part part_;

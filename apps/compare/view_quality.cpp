@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/compare/purpose.hpp"
-#include "apps/pose_error.hpp"
+#include "apps/evaluation/run_summary.hpp"
 #include "core/point_index.hpp"
 #include "core/random.hpp"
 
@@ -167,8 +167,7 @@ ViewQuality summary_of(Tally tally) {
     quality.wrong_share = ratio(tally.wrong, tally.points);
     quality.hidden_share = ratio(tally.hidden, tally.points);
     quality.missing_share = ratio(tally.missing, tally.pixels);
-    if (tally.distances_m.empty()) return quality;
-    const program::ErrorStatistics distance = program::statistics_of(std::move(tally.distances_m));
+    const evaluation::Statistics distance = evaluation::statistics_of(std::move(tally.distances_m));
     quality.mean_distance_m = distance.mean;
     quality.distance_95_m = distance.percentile_95;
     quality.max_distance_m = distance.max;

@@ -1,0 +1,29 @@
+// Stored views from spheres of several radii: four degrees of freedom, as the paper describes such stores.
+#pragma once
+
+#include <vector>
+
+#include "raycast/sphere_view_generator.hpp"
+
+namespace nearpose::compare {
+
+// A store of views from a single radius gets the perspective wrong wherever the camera is nearer or farther. Here the
+// sphere whose radius is nearest to the camera's distance (by ratio) gives the view, so that distance, yaw, pitch and
+// roll are right to the store's steps, and only the object's offset from the optical axis is not in it.
+class NestedSpheresGenerator : public ViewGenerator {
+  public:
+    // One sphere for each entry, at least one. Throws std::invalid_argument.
+    NestedSpheresGenerator(const Mesh& mesh, const std::vector<SphereOptions>& spheres);
+
+    View generate(const Pose& camera_from_object, const PinholeCamera& camera) const override;
+    const ModelExtent& extent() const override { return spheres_.front().extent(); }
+
+    // Which sphere a pose gets its view from.
+    const SphereViewGenerator& sphere_of(const Pose& camera_from_object) const;
+
+  private:
+    std::vector<double> radii_in_diameters_;
+    std::vector<SphereViewGenerator> spheres_;
+};
+
+}  // namespace nearpose::compare
