@@ -29,8 +29,8 @@ struct ViewQuality {
     double wrong_share = 0.0;      // of the points, 0..1: not seen from the pose, hidden or out of the image
     double hidden_share = 0.0;     // of the points: of the wrong ones those behind the first surface on their ray
     double missing_share = 0.0;    // of the pixels, 0..1: they meet the part, but have no point that is seen
-    // From each point to the surface that is seen. Exact for points that are seen. The others' is the distance to the
-    // nearest point of a dense image of `image_camera`, at most half a pixel's diagonal on the surface too long.
+    // From each point to the surface that is seen. Exact for points that are seen; the others' is the distance to the
+    // nearest point of a dense image of `image_camera`: never too short, and at most one of its pixels too long.
     double mean_distance_m = 0.0, distance_95_m = 0.0, max_distance_m = 0.0;
     // CPU time of one thread for 200 views at poses as particles have them, of this generator and of ray casting.
     double cpu_s_per_200 = 0.0, raycast_cpu_s_per_200 = 0.0;
