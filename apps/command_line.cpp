@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/compare_command.hpp"
 #include "apps/console.hpp"
 #include "apps/data_set/file_io.hpp"
 #include "apps/estimate.hpp"
@@ -147,6 +148,7 @@ struct Shell {
         add_simulate_command(app, shared, run);
         add_render_command(app, shared, run);
         add_evaluate_command(app, shared, run);
+        add_compare_command(app, shared, run);
         add_import_command(app, shared, run);
         add_report_command(app, shared, run);
         app.require_subcommand(0, 1);
@@ -203,7 +205,8 @@ int run_shell(Shell& shell, int argc, const char* const* argv) {
     if (ended >= 0) return ended;
     if (!shell.run) return bad_use("no command given", nullptr);
     // These look at interrupted() between frames; the others just end at the first Ctrl-C.
-    if (word_of_command(shell.app) == "estimate" || word_of_command(shell.app) == "simulate") catch_interrupts();
+    const std::string chosen = word_of_command(shell.app);
+    if (chosen == "estimate" || chosen == "simulate" || chosen == "compare") catch_interrupts();
     try {
         return shell.run();
     } catch (const BadUse& error) {

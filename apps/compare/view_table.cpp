@@ -150,7 +150,8 @@ experiment::Table view_table(const ViewBench& bench, const ViewTableOptions& opt
         if (!runs[i].empty()) table.rows.push_back(row_of(cells[i], runs[i]));
     }
     table.curve_sets.push_back(curves_of("Points wrongly visible", "wrong_percent", "of the points [%]", cells, runs));
-    table.curve_sets.push_back(curves_of("Pixels without a point", "missing_percent", "of the pixels [%]", cells, runs));
+    table.curve_sets.push_back(
+        curves_of("Pixels without a point", "missing_percent", "of the pixels [%]", cells, runs));
     return table;
 }
 
