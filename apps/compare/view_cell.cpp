@@ -92,6 +92,7 @@ std::shared_ptr<const ViewGenerator> ViewBench::make_generator(const ViewCell& c
 }
 
 std::shared_ptr<const ViewGenerator> ViewBench::generator(const ViewCell& cell) const {
+    validate(cell);
     Key key{cell.views, 0, 0, 0.0};
     if (cell.views != "raycast") std::get<1>(key) = cell.view_samples;
     if (cell.views == "sphere" || cell.views == "spheres") std::get<2>(key) = cell.viewpoints;

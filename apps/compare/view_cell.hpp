@@ -53,12 +53,14 @@ class ViewBench {
     // last three only where the time was taken, and none for a line of sight that meets nothing.
     std::vector<NamedNumber> numbers(const ViewCell& cell) const;
 
+    // The generator that `cell` is about.
+    std::shared_ptr<const ViewGenerator> generator(const ViewCell& cell) const;
+
     // Side of the images that a sphere of this radius stores to be as dense as `view_samples` of the surface [pixels].
     int sphere_image_size(int view_samples, double radius_diameters) const;
 
   private:
     using Key = std::tuple<std::string, int, int, double>;  // views, samples, viewpoints, radius; 0 where it has none
-    std::shared_ptr<const ViewGenerator> generator(const ViewCell& cell) const;
     std::shared_ptr<const ViewGenerator> make_generator(const ViewCell& cell) const;
 
     Mesh mesh_;

@@ -1,12 +1,11 @@
 #include "apps/compare/view_quality.hpp"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "apps/compare/purpose.hpp"
+#include "apps/compare/thread_time.hpp"
 #include "apps/evaluation/run_summary.hpp"
 #include "core/point_index.hpp"
 #include "core/random.hpp"
@@ -112,12 +111,6 @@ void judge_pixels(const View& view, const std::vector<bool>& seen, const TrueIma
         if (!covered[static_cast<std::size_t>(pixel)]) ++tally.missing;
     }
     tally.pixels += expected.size();
-}
-
-double thread_cpu_s() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 struct TimedView {

@@ -1,0 +1,37 @@
+// The comparison in the filter: what becomes of the views' faults.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "apps/compare/filter_run.hpp"
+#include "apps/experiment/results.hpp"
+
+namespace nearpose::compare {
+
+struct FilterTableOptions {
+    std::vector<double> distances_mm;  // of the visible points' mean: each frame counts for the nearest, by ratio
+    int seeds = 20;
+    int num_threads = 0;
+    // Where each run's table of frames is kept, so that it is not run again; empty: nowhere.
+    std::filesystem::path folder;
+    // What the runs depend on beside filter and seed. A folder of runs with other settings is refused.
+    std::string settings;
+};
+
+// results[filter][seed - 1]: the frames of a run. Throws std::runtime_error for a folder of other settings. Empty where
+// `go_on` said no; what was finished by then is kept in the folder. `run_done` is called once a seed, never twice at
+// the same time.
+using FilterResults = std::vector<std::vector<std::vector<evaluation::FrameErrors>>>;
+FilterResults filter_results(const std::vector<ComparedFilter>& filters,
+                             const std::function<FilterRecording(std::uint64_t)>& recording_of,
+                             const FilterTableOptions& options, const std::function<bool()>& go_on,
+                             const std::function<void()>& run_done);
+
+// Error, arrival and CPU time of whole runs; then how well the pose is kept at each distance.
+std::vector<experiment::Table> filter_tables(const std::vector<ComparedFilter>& filters, const FilterResults& results,
+                                             const FilterTableOptions& options);
+
+}  // namespace nearpose::compare
