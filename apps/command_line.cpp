@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
-#include <numeric>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -13,7 +12,9 @@
 #include "apps/data_set/file_io.hpp"
 #include "apps/estimate.hpp"
 #include "apps/evaluate.hpp"
+#include "apps/experiment_command.hpp"
 #include "apps/import_command.hpp"
+#include "apps/nearest_word.hpp"
 #include "apps/render.hpp"
 #include "apps/report_command.hpp"
 #include "apps/simulate/simulate_command.hpp"
@@ -25,28 +26,6 @@ namespace {
 constexpr const char* kFooter =
     "Every command also takes --config FILE (its options as key = value under [COMMAND]), --print-config and --quiet.\n"
     "Exit codes: 0 done, 1 failed, 2 bad use, 3 done but some frames could not be read, 130 interrupted.";
-
-// Number of letters to insert, delete or change.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        std::size_t diagonal = row[0];
-        row[0] = i;
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-            diagonal = row[j];
-            row[j] = std::min({row[j] + 1, row[j - 1] + 1, changed});
-        }
-    }
-    return row.back();
-}
-
-std::string nearest(const std::string& word, const std::vector<std::string>& known) {
-    return *std::min_element(known.begin(), known.end(), [&](const std::string& a, const std::string& b) {
-        return edit_distance(word, a) < edit_distance(word, b);
-    });
-}
 
 std::vector<std::string> command_names(const CLI::App& app) {
     std::vector<std::string> names;
@@ -102,7 +81,7 @@ std::string suggestion(const std::vector<std::string>& extras, const CLI::App* c
     const std::string word = extras.front().substr(0, extras.front().find('='));
     std::vector<std::string> known = {"--config", "--print-config", "--quiet"};
     for (const CLI::Option* option : command->get_options()) known.push_back(option->get_name());
-    return "; did you mean " + nearest(word, known) + "?";
+    return "; did you mean " + nearest_word(word, known) + "?";
 }
 
 // Keys and values of the chosen command as --config reads them. What is not set is left out: an empty text is no
@@ -151,6 +130,7 @@ struct Shell {
         add_compare_command(app, shared, run);
         add_import_command(app, shared, run);
         add_report_command(app, shared, run);
+        add_experiment_command(app, shared, run);
         app.require_subcommand(0, 1);
         for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
             command->fallthrough();
@@ -199,14 +179,15 @@ int run_shell(Shell& shell, int argc, const char* const* argv) {
     }
     if (word == "help") return print_help(shell.app, words);
     if (!word.empty() && std::find(names.begin(), names.end(), word) == names.end()) {
-        return bad_use("unknown command '" + word + "'; did you mean '" + nearest(word, names) + "'?", nullptr);
+        return bad_use("unknown command '" + word + "'; did you mean '" + nearest_word(word, names) + "'?", nullptr);
     }
     const int ended = parse(shell, argc, argv);
     if (ended >= 0) return ended;
     if (!shell.run) return bad_use("no command given", nullptr);
     // These look at interrupted() between frames; the others just end at the first Ctrl-C.
     const std::string chosen = word_of_command(shell.app);
-    if (chosen == "estimate" || chosen == "simulate" || chosen == "compare") catch_interrupts();
+    const bool asks = chosen == "estimate" || chosen == "simulate" || chosen == "compare" || chosen == "experiment";
+    if (asks) catch_interrupts();
     try {
         return shell.run();
     } catch (const BadUse& error) {

@@ -45,8 +45,8 @@ Method make_method(const EstimatorSetup& setup) {
         throw std::invalid_argument("method '" + setup.method + "': take default or paper");
     }
     Method method = setup.method == "paper" ? method_paper() : method_default();
-    if (setup.rounds) {
-        check_option("rounds", *setup.rounds, 1, 100);
+    if (setup.rounds && setup.gradient) {
+        check_option("rounds (of the gradient step)", *setup.rounds, 1, 100);
         method.step.rounds = *setup.rounds;
     }
     if (setup.consensus_draws) method.step.consensus_draws = *setup.consensus_draws;
@@ -55,7 +55,7 @@ Method make_method(const EstimatorSetup& setup) {
         method.scale_by_overlap = *setup.overlap;
     }
     if (!setup.gradient) {
-        if (setup.rounds || setup.residual) {
+        if (setup.rounds.value_or(0) != 0 || setup.residual) {
             throw std::invalid_argument("rounds and residual are of the gradient step, which is off");
         }
         method.step.rounds = 0;

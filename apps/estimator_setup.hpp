@@ -31,7 +31,7 @@ struct EstimatorSetup {
 
     // Where they differ from the method. All are of the particles' step; the default method's start and refinement
     // keep their own rounds and take no sample consensus.
-    std::optional<int> rounds;            // at least 1
+    std::optional<int> rounds;            // at least 1; 0 goes with gradient = false
     std::optional<int> consensus_draws;   // 0: no sample consensus
     std::optional<bool> overlap;          // the paper's cost alone: scaled by m / n, or the plain mean squared error
     std::optional<std::string> residual;  // of every solve

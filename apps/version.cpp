@@ -3,6 +3,10 @@
 namespace nearpose::program {
 
 // The names in capitals come from CMake.
+std::string version_number() {
+    return NEARPOSE_VERSION;
+}
+
 std::string version_text() {
     return "nearpose " NEARPOSE_VERSION
            "\n"

@@ -1,0 +1,258 @@
+#include "apps/experiment/column.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace nearpose::experiment {
+namespace {
+
+using evaluation::RunSummary;
+using evaluation::Statistics;
+
+enum class Pooling { kMean, kMedian, kShare, kMedianTime };
+
+struct ColumnRule {
+    std::string name, figure;
+    Pooling pooling = Pooling::kMean;
+    std::string among = {};  // the figure that is 1 for the runs that count; empty: all
+    double scale = 1.0;
+    Column heading = {};
+};
+
+struct ErrorKind {
+    const char *name, *title, *unit;
+};
+constexpr ErrorKind kErrors[] = {{"translation", "translation", "mm"},
+                                 {"rotation", "rotation", "deg"},
+                                 {"translation_x", "translation x", "mm"},
+                                 {"translation_y", "translation y", "mm"},
+                                 {"translation_z", "translation z", "mm"},
+                                 {"rotation_x", "rotation x", "deg"},
+                                 {"rotation_y", "rotation y", "deg"},
+                                 {"rotation_z", "rotation z", "deg"},
+                                 {"add", "ADD", "mm"},
+                                 {"add_s", "ADD-S", "mm"},
+                                 {"mssd", "MSSD", "mm"},
+                                 {"mspd", "MSPD", "px"}};
+
+void add_error_columns(const ErrorKind& error, std::vector<ColumnRule>& rules) {
+    const std::string name = error.name, title = error.title;
+    const std::pair<const char*, const char*> statistics[] = {
+        {"mean", ""}, {"sd", ", sd"}, {"p95", ", 95 %"}, {"max", ", max"}};
+    for (const auto& [statistic, suffix] : statistics) {
+        const std::string figure = name + "_" + statistic;
+        rules.push_back({figure, figure, Pooling::kMean, "", 1.0, {title + suffix, error.unit, 2}});
+        for (const char* among : {"held", "converged"}) {
+            rules.push_back({figure + "_" + among,
+                             figure,
+                             Pooling::kMean,
+                             among,
+                             1.0,
+                             {title + suffix + " (" + among + ")", error.unit, 2}});
+        }
+    }
+    rules.push_back(
+        {name + "_median", name + "_mean", Pooling::kMedian, "", 1.0, {title + ", median run", error.unit, 2}});
+}
+
+std::vector<ColumnRule> run_columns() {
+    std::vector<ColumnRule> rules;
+    for (const ErrorKind& error : kErrors) add_error_columns(error, rules);
+    const auto add_share = [&](const char* name, const char* title) {
+        rules.push_back({name, name, Pooling::kShare, "", 100.0, {title, "%", 0}});
+    };
+    add_share("arrives", "runs that arrive");
+    add_share("stays", "arrive and stay");
+    add_share("held", "held after burn-in");
+    add_share("converged", "converged");
+    add_share("arrives_fine", "within 2 mm, 1 deg");
+    const auto add_frames = [&](const char* name, const char* title) {
+        rules.push_back({name, name, Pooling::kMedianTime, "", 1.0, {title, "frames", 0}});
+    };
+    add_frames("frames_to_arrive", "until arrival");
+    add_frames("frames_to_hold", "until it holds");
+    add_frames("frames_to_fine", "until 2 mm, 1 deg");
+    const auto add_percent = [&](const char* name, const char* title) {
+        rules.push_back({name, name, Pooling::kMean, "", 100.0, {title, "%", 1}});
+    };
+    add_percent("lost", "frames lost");
+    add_percent("without_pose", "frames without pose");
+    add_percent("predicted", "frames predicted");
+    add_percent("add_auc", "AUC of ADD");
+    add_percent("add_s_auc", "AUC of ADD-S");
+    add_percent("add_auc_diameter", "AUC of ADD, 0.1 d");
+    add_percent("add_s_auc_diameter", "AUC of ADD-S, 0.1 d");
+    add_percent("inside_90", "in the 90 % region");
+    add_percent("inside_90_rotation", "in the 90 % region, rotation");
+    add_percent("inside_90_translation", "in the 90 % region, translation");
+    rules.push_back({"cpu_ms", "cpu_ms", Pooling::kMean, "", 1.0, {"CPU a frame, median", "ms", 1}});
+    rules.push_back({"cpu_ms_mean", "cpu_ms_mean", Pooling::kMean, "", 1.0, {"CPU a frame, mean", "ms", 1}});
+    return rules;
+}
+
+// As compare::ViewBench::numbers names them.
+std::vector<ColumnRule> view_columns() {
+    const std::pair<const char*, Column> columns[] = {
+        {"points_per_view", {"points a view", "", 0}},
+        {"pixels_per_view", {"pixels a view", "", 0}},
+        {"wrong_percent", {"wrongly visible", "%", 2}},
+        {"hidden_percent", {"hidden", "%", 2}},
+        {"missing_percent", {"missing", "%", 2}},
+        {"mean_distance_mm", {"off the surface, mean", "mm", 3}},
+        {"distance_95_mm", {"off the surface, 95 %", "mm", 3}},
+        {"max_distance_mm", {"off the surface, max", "mm", 2}},
+        {"cpu_ms_per_200_views", {"CPU for 200 views", "ms", 1}},
+        {"raycast_cpu_ms_per_200_views", {"CPU for 200 cast views", "ms", 1}},
+        {"cpu_ratio_to_raycast", {"CPU, of ray casting's", "", 2}}};
+    std::vector<ColumnRule> rules;
+    for (const auto& [name, heading] : columns) rules.push_back({name, name, Pooling::kMean, "", 1.0, heading});
+    return rules;
+}
+
+const std::vector<ColumnRule>& rules_of(TableKind kind) {
+    static const std::vector<ColumnRule> runs = run_columns(), views = view_columns();
+    return kind == TableKind::kRun ? runs : views;
+}
+
+const ColumnRule& rule_named(TableKind kind, const std::string& name) {
+    for (const ColumnRule& rule : rules_of(kind)) {
+        if (rule.name == name) return rule;
+    }
+    throw std::out_of_range("no column " + name);
+}
+
+Entry scaled(const Entry& entry, double scale) {
+    const auto times = [scale](const std::optional<double>& value) {
+        return value ? std::optional(*value * scale) : std::nullopt;
+    };
+    return {times(entry.value), times(entry.low), times(entry.high)};
+}
+
+Entry mean_of(const std::vector<double>& values) {
+    if (values.empty()) return {};
+    if (values.size() == 1) return {values.front(), {}, {}};
+    const evaluation::Interval mean = evaluation::mean_over_runs(values);
+    return {mean.value, mean.low, mean.high};
+}
+
+Entry share_of(const std::vector<double>& values) {
+    if (values.empty()) return {};
+    const auto yes = std::count(values.begin(), values.end(), 1.0);
+    const evaluation::Interval share = evaluation::proportion(static_cast<int>(yes), static_cast<int>(values.size()));
+    return {share.value, share.low, share.high};
+}
+
+void add_statistics(const std::string& name, const Statistics& statistics, Figures& figures) {
+    if (statistics.count == 0) return;  // no frame with a pose: an error of 0 would be a lie
+    figures[name + "_mean"] = statistics.mean;
+    figures[name + "_sd"] = statistics.standard_deviation;
+    figures[name + "_p95"] = statistics.percentile_95;
+    figures[name + "_max"] = statistics.max;
+}
+
+void add_errors(const RunSummary& summary, Figures& figures) {
+    add_statistics("translation", summary.translation_mm, figures);
+    add_statistics("rotation", summary.rotation_deg, figures);
+    const char* axes[] = {"x", "y", "z"};
+    for (int axis = 0; axis < 3; ++axis) {
+        add_statistics(std::string("translation_") + axes[axis], summary.translation_axis_mm[axis], figures);
+        add_statistics(std::string("rotation_") + axes[axis], summary.rotation_axis_deg[axis], figures);
+    }
+    add_statistics("add", summary.add_mm, figures);
+    add_statistics("add_s", summary.add_s_mm, figures);
+    add_statistics("mssd", summary.mssd_mm, figures);
+    add_statistics("mspd", summary.mspd_px, figures);
+    figures["add_auc"] = summary.add_auc;
+    figures["add_s_auc"] = summary.add_s_auc;
+    figures["add_auc_diameter"] = summary.add_auc_diameter;
+    figures["add_s_auc_diameter"] = summary.add_s_auc_diameter;
+    if (summary.inside_90) figures["inside_90"] = *summary.inside_90;
+    if (summary.inside_90_rotation) figures["inside_90_rotation"] = *summary.inside_90_rotation;
+    if (summary.inside_90_translation) figures["inside_90_translation"] = *summary.inside_90_translation;
+}
+
+}  // namespace
+
+Figures figures_of(const RunSummary& summary, const evaluation::SummaryOptions& options) {
+    Figures figures;
+    add_errors(summary, figures);
+    const auto flag = [](bool value) { return value ? 1.0 : 0.0; };
+    const evaluation::Arrival& coarse = summary.coarse;
+    figures["arrives"] = flag(coarse.first_index.has_value());
+    figures["stays"] = flag(coarse.stays());
+    figures["held"] = flag(coarse.holds_from && *coarse.holds_from <= options.burn_in);
+    figures["converged"] =
+        flag(summary.translation_mm.count > 0 && summary.translation_mm.median <= 1e3 * options.coarse.translation_m &&
+             summary.rotation_deg.median <= options.coarse.rotation_rad * 180.0 / M_PI);
+    figures["arrives_fine"] = flag(summary.fine.first_index.has_value());
+    // The number of frames up to and with the one that is there.
+    if (coarse.first_index) figures["frames_to_arrive"] = *coarse.first_index + 1;
+    if (coarse.holds_from) figures["frames_to_hold"] = *coarse.holds_from + 1;
+    if (summary.fine.first_index) figures["frames_to_fine"] = *summary.fine.first_index + 1;
+    const double frames = std::max(1, summary.frames);
+    if (coarse.first_index && *coarse.first_index + 1 < summary.frames) {
+        figures["lost"] = summary.frames_lost / static_cast<double>(summary.frames - *coarse.first_index - 1);
+    }
+    figures["without_pose"] = summary.frames_without_pose / frames;
+    figures["predicted"] = summary.frames_predicted / frames;
+    return figures;
+}
+
+std::vector<std::string> column_names(TableKind kind) {
+    std::vector<std::string> names;
+    for (const ColumnRule& rule : rules_of(kind)) names.push_back(rule.name);
+    return names;
+}
+
+Column heading_of(TableKind kind, const std::string& name) {
+    return rule_named(kind, name).heading;
+}
+
+Entry median_of(std::vector<double> values) {
+    if (values.empty()) return {};
+    std::sort(values.begin(), values.end());
+    const auto finite = [](double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; };
+    const std::size_t n = values.size(), middle = n / 2;
+    Entry entry;
+    entry.value = finite(n % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]));
+    // Ranks k and n + 1 - k enclose the median unless fewer than k values lie on one side of it: a binomial tail.
+    double tail = 0.0, term = std::pow(0.5, static_cast<double>(n));
+    std::size_t k = 0;
+    while (k < middle && tail + term <= 0.025) {
+        tail += term;
+        term *= static_cast<double>(n - k) / static_cast<double>(k + 1);
+        ++k;
+    }
+    if (k == 0) return entry;
+    entry.low = finite(values[k - 1]);
+    entry.high = finite(values[n - k]);
+    return entry;
+}
+
+Entry entry_of(TableKind kind, const std::string& name, const std::vector<Figures>& runs) {
+    const ColumnRule& rule = rule_named(kind, name);
+    std::vector<double> values;
+    for (const Figures& run : runs) {
+        const auto among = run.find(rule.among);
+        if (!rule.among.empty() && (among == run.end() || among->second != 1.0)) continue;
+        const auto found = run.find(rule.figure);
+        if (found != run.end())
+            values.push_back(found->second);
+        else if (rule.pooling == Pooling::kMedianTime)
+            values.push_back(std::numeric_limits<double>::infinity());
+    }
+    switch (rule.pooling) {
+        case Pooling::kMean:
+            return scaled(mean_of(values), rule.scale);
+        case Pooling::kShare:
+            return scaled(share_of(values), rule.scale);
+        case Pooling::kMedian:
+        case Pooling::kMedianTime:
+            return scaled(median_of(values), rule.scale);
+    }
+    return {};
+}
+
+}  // namespace nearpose::experiment

@@ -1,0 +1,35 @@
+// The columns that a table may have: how the figures of a row's runs become one entry.
+//
+// A figure is one number of one run; `translation_mean` is the mean error of its frames after the burn-in, of those
+// with a pose. A column of that name is its mean over all runs that have it, with an interval over runs (never over
+// frames, which depend on each other). Endings choose otherwise:
+//   _held       the mean over the runs that are within 10 mm and 5 degrees in every frame after the burn-in
+//   _converged  over the runs whose median errors after the burn-in are within 10 mm and 5 degrees
+//   _median     translation_median: the median over runs of translation_mean, with the interval of its ranks
+// Shares of runs have Wilson's interval. Frames until something are medians in which a run that never gets there
+// counts as later than all others; where that is half of the runs, there is no value.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "apps/evaluation/run_summary.hpp"
+#include "apps/experiment/results.hpp"
+#include "apps/experiment/setting.hpp"
+
+namespace nearpose::experiment {
+
+using Figures = std::map<std::string, double>;  // what is not known is left out
+
+Figures figures_of(const evaluation::RunSummary& summary, const evaluation::SummaryOptions& options);
+
+std::vector<std::string> column_names(TableKind kind);
+// Both throw std::out_of_range for a name that is not among these.
+Column heading_of(TableKind kind, const std::string& name);
+Entry entry_of(TableKind kind, const std::string& name, const std::vector<Figures>& runs);
+
+// Of the median, from ranks of the values, which may hold infinity; without bounds where there are too few (5).
+Entry median_of(std::vector<double> values);
+
+}  // namespace nearpose::experiment

@@ -1,0 +1,89 @@
+#include "apps/experiment/results_text.hpp"
+
+#include "apps/data_set/number_text.hpp"
+
+namespace nearpose::experiment {
+namespace {
+
+// A bar would end the cell.
+std::string in_cell(const std::string& text) {
+    std::string safe;
+    for (const char c : text) {
+        if (c == '|') safe += '\\';
+        safe += c == '\n' ? ' ' : c;
+    }
+    return safe;
+}
+
+std::string entry_text(const Entry& entry, int decimals) {
+    const auto fixed = [&](const std::optional<double>& value) {
+        return value ? data_set::format_fixed(*value, decimals) : std::string("-");
+    };
+    if (!entry.low && !entry.high) return fixed(entry.value);
+    return fixed(entry.value) + " [" + fixed(entry.low) + ", " + fixed(entry.high) + "]";
+}
+
+std::string markdown_of(const Table& table) {
+    std::string text = "## " + table.title + "\n\n";
+    if (!table.text.empty()) text += table.text + "\n\n";
+    std::string line = "|---|---:|";
+    text += "| | runs |";
+    for (const Column& column : table.columns) {
+        text += " " + in_cell(column.title) + (column.unit.empty() ? "" : " [" + column.unit + "]") + " |";
+        line += "---:|";
+    }
+    text += "\n" + line + "\n";
+    for (const Row& row : table.rows) {
+        text += "| " + in_cell(row.label) + " | " + std::to_string(row.runs) + " |";
+        for (std::size_t c = 0; c < table.columns.size(); ++c)
+            text += " " + entry_text(row.entries[c], table.columns[c].decimals) + " |";
+        text += "\n";
+    }
+    return text + "\n";
+}
+
+// Quoted, with quotes doubled, where the text would end the field.
+std::string csv_field(const std::string& text) {
+    if (text.find_first_of(",\"\n\r") == text.npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+    return quoted + "\"";
+}
+
+std::string csv_number(const std::optional<double>& value) {
+    return value ? data_set::format_number(*value) : "";
+}
+
+}  // namespace
+
+std::string markdown_of(const Results& results, const std::vector<std::string>& pictures) {
+    std::string text = "# " + results.name + "\n\nMade by `" + results.command +
+                       "`. In brackets: the 95 % confidence interval over runs.\n\n";
+    std::size_t picture = 0;
+    for (const Table& table : results.tables) {
+        text += markdown_of(table);
+        for (const CurveSet& set : table.curve_sets) {
+            if (!pictures[picture].empty()) text += "![" + set.title + "](" + pictures[picture] + ")\n\n";
+            ++picture;
+        }
+    }
+    return text;
+}
+
+std::string csv_of(const Results& results) {
+    std::string text = "table,row,runs,column,unit,value,low,high\n";
+    for (const Table& table : results.tables) {
+        for (const Row& row : table.rows) {
+            for (std::size_t c = 0; c < table.columns.size(); ++c) {
+                const Column& column = table.columns[c];
+                const Entry& entry = row.entries[c];
+                text += csv_field(table.name) + "," + csv_field(row.label) + "," + std::to_string(row.runs) + "," +
+                        csv_field(column.title) + "," + column.unit + "," + csv_number(entry.value) + "," +
+                        csv_number(entry.low) + "," + csv_number(entry.high) + "\n";
+            }
+        }
+    }
+    return text;
+}
+
+}  // namespace nearpose::experiment

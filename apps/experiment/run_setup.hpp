@@ -1,0 +1,58 @@
+// From settings to what is simulated and what tracks it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "apps/compare/view_cell.hpp"
+#include "apps/estimator_setup.hpp"
+#include "apps/evaluation/frame_errors.hpp"
+#include "apps/evaluation/run_summary.hpp"
+#include "apps/experiment/description.hpp"
+#include "apps/simulate/parts.hpp"
+#include "apps/simulate/recording.hpp"
+
+namespace nearpose::experiment {
+
+// Paths are relative to `folder`. All throw std::runtime_error or std::invalid_argument for what does not go together.
+simulate::RecordingOptions recording_options(const Settings& settings, std::uint64_t seed,
+                                             const std::filesystem::path& folder);
+program::EstimatorSetup estimator_setup(const Settings& settings, std::uint64_t seed);
+evaluation::SummaryOptions summary_options(const Settings& settings);
+compare::ViewCell view_cell(const Settings& settings, std::uint64_t seed);
+
+// Throws std::runtime_error naming file, table, row and cause, before hours are spent.
+void check(const Description& description);
+
+struct PartAssets {
+    simulate::EmbeddedPart part;
+    evaluation::ModelShape shape;
+};
+
+// Parts and generators, made when they are first asked for and kept. May be used from several threads at once.
+class Workshop {
+  public:
+    explicit Workshop(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+    const std::filesystem::path& folder() const { return folder_; }
+    // By the settings part, model and unit.
+    const PartAssets& part(const Settings& settings);
+    // And by views and view_samples.
+    std::shared_ptr<const ViewGenerator> views(const Settings& settings);
+    const compare::ViewBench& view_bench(const Settings& settings);
+
+  private:
+    const PartAssets& part_unlocked(const Settings& settings);
+
+    std::filesystem::path folder_;
+    std::mutex mutex_;
+    std::map<std::string, std::unique_ptr<PartAssets>> parts_;
+    std::map<std::string, std::shared_ptr<const ViewGenerator>> views_;
+    std::map<std::string, std::unique_ptr<compare::ViewBench>> benches_;
+};
+
+}  // namespace nearpose::experiment
