@@ -116,7 +116,12 @@ std::vector<experiment::Table> compare_in_filter(const CompareOptions& options, 
         const std::string name = options.model.model.empty() ? options.part : "";
         return compare::sweep_recording(part, name, reach.far_m, reach.near_m, options.frames, seed);
     };
-    if (!options.scene.empty()) {
+    if (options.scene.empty()) {
+        table.distance_name = "distance of the camera from the aimed point";
+        table.distance_of = [&](const evaluation::FrameErrors& frame) -> std::optional<double> {
+            return reach.far_m + (reach.near_m - reach.far_m) * frame.frame_id / (options.frames - 1);
+        };
+    } else {
         // Read once: what differs between the runs is the filter's own seed.
         const auto scene = compare::scene_recording(options.scene, options.model.models, options.model.object);
         recording_of = [scene](std::uint64_t) { return scene; };

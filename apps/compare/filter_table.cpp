@@ -12,6 +12,8 @@ namespace nearpose::compare {
 namespace {
 
 using Frames = std::vector<evaluation::FrameErrors>;
+using Value = std::optional<double> (*)(const evaluation::FrameErrors&);
+using OfRun = double (*)(const std::vector<double>&);
 
 constexpr int kBurnIn = 15;  // frames; of short runs a quarter
 
@@ -65,15 +67,14 @@ std::size_t nearest_distance(const std::vector<double>& distances_mm, double dis
 }
 
 // Values of each run's frames near one of the distances.
-std::vector<std::vector<double>> values_near(
-    const std::vector<Frames>& runs, const std::vector<double>& distances_mm, std::size_t distance,
-    const std::function<std::optional<double>(const evaluation::FrameErrors&)>& value) {
+std::vector<std::vector<double>> values_near(const std::vector<Frames>& runs, const FilterTableOptions& options,
+                                             std::size_t distance, Value value) {
     std::vector<std::vector<double>> values;
     for (const Frames& frames : runs) {
         std::vector<double> of_run;
         for (const evaluation::FrameErrors& frame : frames) {
-            if (!frame.visibility || !(frame.visibility->distance_m > 0.0)) continue;
-            if (nearest_distance(distances_mm, frame.visibility->distance_m) != distance) continue;
+            const std::optional<double> distance_m = options.distance_of(frame);
+            if (!distance_m || nearest_distance(options.distances_mm, *distance_m) != distance) continue;
             if (const auto known = value(frame)) of_run.push_back(*known);
         }
         if (!of_run.empty()) values.push_back(std::move(of_run));
@@ -95,9 +96,6 @@ std::optional<double> in_limit_percent(const evaluation::FrameErrors& frame) {
     return evaluation::within(frame, {}) ? 100.0 : 0.0;
 }
 
-using Value = std::optional<double> (*)(const evaluation::FrameErrors&);
-using OfRun = double (*)(const std::vector<double>&);
-
 double mean_of(const std::vector<double>& values) {
     return evaluation::statistics_of(values).mean;
 }
@@ -106,18 +104,16 @@ double median_of(const std::vector<double>& values) {
 }
 
 experiment::Table by_distance(const std::vector<ComparedFilter>& filters, const FilterResults& results,
-                              const std::vector<double>& distances_mm, Value value, OfRun of_run,
-                              const std::string& unit) {
+                              const FilterTableOptions& options, Value value, OfRun of_run, const std::string& unit) {
     experiment::Table table;
-    for (const double distance_mm : distances_mm) {
+    for (const double distance_mm : options.distances_mm) {
         table.columns.push_back({"at " + data_set::format_number(distance_mm) + " mm", unit, 1});
     }
     for (std::size_t k = 0; k < filters.size(); ++k) {
         experiment::Row row{label_of(filters[k]), static_cast<int>(results[k].size()), {}};
-        for (std::size_t d = 0; d < distances_mm.size(); ++d) {
+        for (std::size_t d = 0; d < options.distances_mm.size(); ++d) {
             std::vector<double> of_runs;
-            for (const auto& values : values_near(results[k], distances_mm, d, value))
-                of_runs.push_back(of_run(values));
+            for (const auto& values : values_near(results[k], options, d, value)) of_runs.push_back(of_run(values));
             row.entries.push_back(mean_entry(of_runs));
         }
         table.rows.push_back(std::move(row));
@@ -126,26 +122,33 @@ experiment::Table by_distance(const std::vector<ComparedFilter>& filters, const 
 }
 
 experiment::CurveSet error_curves(const std::vector<ComparedFilter>& filters, const FilterResults& results,
-                                  const std::vector<double>& distances_mm, const std::string& title, Value value,
+                                  const FilterTableOptions& options, const std::string& title, Value value,
                                   const std::string& y_title) {
     constexpr int kBins = 10;
-    const auto [low, high] = std::minmax_element(distances_mm.begin(), distances_mm.end());
-    experiment::CurveSet set{title, "distance of the visible points' mean [mm]", y_title, false, {}};
+    constexpr double kMargin = 1.1;  // on either side, so that frames at the ends count
+    const auto [low, high] = std::minmax_element(options.distances_mm.begin(), options.distances_mm.end());
+    experiment::CurveSet set{title, options.distance_name + " [mm]", y_title, false, {}};
     for (std::size_t k = 0; k < filters.size(); ++k) {
         std::vector<evaluation::CurvePoint> points;
         for (const Frames& frames : results[k]) {
             for (const evaluation::FrameErrors& frame : frames) {
                 const auto known = value(frame);
-                if (frame.visibility && known) points.push_back({1e3 * frame.visibility->distance_m, *known});
+                const auto distance_m = options.distance_of(frame);
+                if (distance_m && known) points.push_back({1e3 * *distance_m, *known});
             }
         }
-        // A camera that aims from the nearest distance sees most of the surface from farther away.
-        set.curves.push_back(evaluation::curve_of(label_of(filters[k]), points, 0.8 * *low, 1.3 * *high, kBins));
+        set.curves.push_back(
+            evaluation::curve_of(label_of(filters[k]), points, *low / kMargin, *high * kMargin, kBins));
     }
     return set;
 }
 
 }  // namespace
+
+std::optional<double> visible_distance(const evaluation::FrameErrors& frame) {
+    if (!frame.visibility || !(frame.visibility->distance_m > 0.0)) return std::nullopt;
+    return frame.visibility->distance_m;
+}
 
 std::vector<experiment::Table> filter_tables(const std::vector<ComparedFilter>& filters, const FilterResults& results,
                                              const FilterTableOptions& options) {
@@ -168,18 +171,16 @@ std::vector<experiment::Table> filter_tables(const std::vector<ComparedFilter>& 
     // Diameters only scale figures that are not in the table.
     for (std::size_t k = 0; k < filters.size(); ++k) runs.rows.push_back(run_row(filters[k], results[k], 1.0));
     runs.curve_sets = {
-        error_curves(filters, results, options.distances_mm, "Translation error", translation_mm,
-                     "translation error [mm]"),
-        error_curves(filters, results, options.distances_mm, "Rotation error", rotation_deg, "rotation error [deg]")};
+        error_curves(filters, results, options, "Translation error", translation_mm, "translation error [mm]"),
+        error_curves(filters, results, options, "Rotation error", rotation_deg, "rotation error [deg]")};
 
-    experiment::Table kept = by_distance(filters, results, options.distances_mm, in_limit_percent, mean_of, "%");
+    experiment::Table kept = by_distance(filters, results, options, in_limit_percent, mean_of, "%");
     kept.name = "filter_kept";
     kept.title = "In the filter, by distance: frames within 10 mm and 5 degrees";
     kept.text =
-        "Share of the frames, mean over the runs. A frame counts for the distance that is nearest, by ratio, to that "
-        "of "
-        "the mean of its visible points.";
-    experiment::Table errors = by_distance(filters, results, options.distances_mm, translation_mm, median_of, "mm");
+        "Share of the frames, mean over the runs. A frame counts for the distance that is nearest, by ratio, to the " +
+        options.distance_name + ".";
+    experiment::Table errors = by_distance(filters, results, options, translation_mm, median_of, "mm");
     errors.name = "filter_errors";
     errors.title = "In the filter, by distance: translation error";
     errors.text =

@@ -11,8 +11,13 @@
 
 namespace nearpose::compare {
 
+std::optional<double> visible_distance(const evaluation::FrameErrors& frame);  // [m]
+
 struct FilterTableOptions {
-    std::vector<double> distances_mm;  // of the visible points' mean: each frame counts for the nearest, by ratio
+    std::vector<double> distances_mm;  // each frame counts for the nearest, by ratio
+    // Of a frame [m], none where it has no distance. By itself that of the mean of its visible points.
+    std::function<std::optional<double>(const evaluation::FrameErrors&)> distance_of = visible_distance;
+    std::string distance_name = "distance of the visible points' mean";
     int seeds = 20;
     int num_threads = 0;
     // Where each run's table of frames is kept, so that it is not run again; empty: nowhere.
