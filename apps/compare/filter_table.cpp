@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
+#include <set>
 
 #include "apps/data_set/number_text.hpp"
 #include "apps/evaluation/run_summary.hpp"
@@ -121,14 +121,17 @@ experiment::Table by_distance(const std::vector<ComparedFilter>& filters, const 
     return table;
 }
 
+// Of one method's filters: more curves than that nobody can tell apart.
 experiment::CurveSet error_curves(const std::vector<ComparedFilter>& filters, const FilterResults& results,
-                                  const FilterTableOptions& options, const std::string& title, Value value,
-                                  const std::string& y_title) {
+                                  const FilterTableOptions& options, const std::string& method,
+                                  const std::string& quantity, const std::string& unit, Value value) {
     constexpr int kBins = 10;
     constexpr double kMargin = 1.1;  // on either side, so that frames at the ends count
     const auto [low, high] = std::minmax_element(options.distances_mm.begin(), options.distances_mm.end());
-    experiment::CurveSet set{title, options.distance_name + " [mm]", y_title, false, {}};
+    experiment::CurveSet set{
+        "Method " + method + ": " + quantity, options.distance_name + " [mm]", quantity + " [" + unit + "]", false, {}};
     for (std::size_t k = 0; k < filters.size(); ++k) {
+        if (filters[k].method != method) continue;
         std::vector<evaluation::CurvePoint> points;
         for (const Frames& frames : results[k]) {
             for (const evaluation::FrameErrors& frame : frames) {
@@ -137,8 +140,7 @@ experiment::CurveSet error_curves(const std::vector<ComparedFilter>& filters, co
                 if (distance_m && known) points.push_back({1e3 * *distance_m, *known});
             }
         }
-        set.curves.push_back(
-            evaluation::curve_of(label_of(filters[k]), points, *low / kMargin, *high * kMargin, kBins));
+        set.curves.push_back(evaluation::curve_of(filters[k].views, points, *low / kMargin, *high * kMargin, kBins));
     }
     return set;
 }
@@ -170,9 +172,14 @@ std::vector<experiment::Table> filter_tables(const std::vector<ComparedFilter>& 
                     {"CPU a frame", "ms", 1}};
     // Diameters only scale figures that are not in the table.
     for (std::size_t k = 0; k < filters.size(); ++k) runs.rows.push_back(run_row(filters[k], results[k], 1.0));
-    runs.curve_sets = {
-        error_curves(filters, results, options, "Translation error", translation_mm, "translation error [mm]"),
-        error_curves(filters, results, options, "Rotation error", rotation_deg, "rotation error [deg]")};
+    std::set<std::string> methods;
+    for (const ComparedFilter& filter : filters) {
+        if (!methods.insert(filter.method).second) continue;
+        runs.curve_sets.push_back(
+            error_curves(filters, results, options, filter.method, "translation error", "mm", translation_mm));
+        runs.curve_sets.push_back(
+            error_curves(filters, results, options, filter.method, "rotation error", "deg", rotation_deg));
+    }
 
     experiment::Table kept = by_distance(filters, results, options, in_limit_percent, mean_of, "%");
     kept.name = "filter_kept";

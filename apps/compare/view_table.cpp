@@ -22,8 +22,8 @@ const std::vector<Quantity>& quantities() {
                                               {"wrong_percent", {"wrongly visible", "%", 2}},
                                               {"missing_percent", {"missing", "%", 2}},
                                               {"mean_distance_mm", {"off the surface, mean", "mm", 3}},
-                                              {"distance_95_mm", {"95 %", "mm", 3}},
-                                              {"max_distance_mm", {"max", "mm", 2}},
+                                              {"distance_95_mm", {"95 % of a view", "mm", 3}},
+                                              {"max_distance_mm", {"max of a view", "mm", 2}},
                                               {"cpu_ms_per_200_views", {"CPU for 200 views", "ms", 1}},
                                               {"cpu_ratio_to_raycast", {"of ray casting's", "", 2}}};
     return all;
