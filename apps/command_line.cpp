@@ -13,6 +13,7 @@
 #include "apps/estimate.hpp"
 #include "apps/evaluate.hpp"
 #include "apps/experiment_command.hpp"
+#include "apps/fit_sensor_command.hpp"
 #include "apps/import_command.hpp"
 #include "apps/nearest_word.hpp"
 #include "apps/render.hpp"
@@ -131,6 +132,7 @@ struct Shell {
         add_import_command(app, shared, run);
         add_report_command(app, shared, run);
         add_experiment_command(app, shared, run);
+        add_fit_sensor_command(app, shared, run);
         app.require_subcommand(0, 1);
         for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
             command->fallthrough();
