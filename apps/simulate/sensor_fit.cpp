@@ -62,6 +62,11 @@ struct PixelSums {
     int count = 0;
     double sum = 0.0, squares = 0.0;
 
+    void add(double value) {
+        ++count;
+        sum += value;
+        squares += value * value;
+    }
     double mean() const { return count == 0 ? 0.0 : sum / count; }
 };
 
@@ -81,10 +86,14 @@ bool is_flat(const WallFit& fit, const SensorFitOptions& options) {
 
 bool same_pose(const WallPlane& a, const WallPlane& b, const PinholeCamera& camera, const PixelBox& region,
                double tolerance_m) {
+    const double middle_m =
+        a.depth_m(camera.ray(0.5 * (region.first_u + region.last_u), 0.5 * (region.first_v + region.last_v)));
     for (const int u : {region.first_u, region.last_u - 1}) {
         for (const int v : {region.first_v, region.last_v - 1}) {
-            const double a_m = a.depth_m(camera.ray(u, v)), b_m = b.depth_m(camera.ray(u, v));
-            if (!(std::abs(a_m - b_m) <= tolerance_m)) return false;
+            // dz = z^2 d(1/z), z being the middle's: a steep wall's far corner, which noise moves most, may be metres
+            // away or behind the camera.
+            const double difference_m = (a.inverse_m - b.inverse_m).dot(camera.ray(u, v)) * middle_m * middle_m;
+            if (!(std::abs(difference_m) <= tolerance_m)) return false;
         }
     }
     return true;
@@ -160,10 +169,9 @@ PixelGeometry geometry_of(const Wall& wall, const WallPose& pose, const WallSens
 
 // Depth less the plane's, by pixel of the region [m]; NaN where there is none or an outlier.
 std::vector<double> residuals_of(const Wall& wall, std::size_t frame_index, const PixelGeometry& geometry,
-                                 const WallSensor& sensor) {
+                                 double spread) {
     const WallFrame& frame = wall.frames[frame_index];
     const WallPlane& plane = wall.planes[frame_index];
-    const double spread = robust_spread(frame, wall.region, plane, sensor);
     std::vector<double> residuals(static_cast<std::size_t>(wall.size()), std::numeric_limits<double>::quiet_NaN());
     for (int pixel = 0; pixel < wall.size(); ++pixel) {
         const auto index = static_cast<std::size_t>(pixel);
@@ -265,20 +273,19 @@ Measured measure(const Wall& wall, const WallSensor& sensor) {
     for (const WallPose& pose : wall.poses) {
         const PixelGeometry geometry = geometry_of(wall, pose, sensor);
         std::vector<PixelSums> pixels(static_cast<std::size_t>(wall.size()));
+        std::vector<double> spreads;
         for (const std::size_t frame : pose.frames) {
-            const std::vector<double> residuals = residuals_of(wall, frame, geometry, sensor);
+            spreads.push_back(robust_spread(wall.frames[frame], wall.region, wall.planes[frame], sensor));
+            const std::vector<double> residuals = residuals_of(wall, frame, geometry, spreads.back());
             for (std::size_t i = 0; i < residuals.size(); ++i) {
-                if (!std::isfinite(residuals[i])) continue;
-                ++pixels[i].count;
-                pixels[i].sum += residuals[i];
-                pixels[i].squares += residuals[i] * residuals[i];
+                if (std::isfinite(residuals[i])) pixels[i].add(residuals[i]);
             }
         }
         // Again instead of kept: recordings are long.
-        for (const std::size_t frame : pose.frames) {
-            std::vector<double> deviations = residuals_of(wall, frame, geometry, sensor);
+        for (std::size_t k = 0; k < pose.frames.size(); ++k) {
+            std::vector<double> deviations = residuals_of(wall, pose.frames[k], geometry, spreads[k]);
             for (std::size_t i = 0; i < deviations.size(); ++i) {
-                if (wall.separated) deviations[i] -= pixels[i].mean();
+                if (wall.separated) deviations[i] -= pixels[i].count < 2 ? NAN : pixels[i].mean();
                 deviations[i] /= geometry.expected_m[i];
             }
             add_autocorrelation(wall, deviations, measured);

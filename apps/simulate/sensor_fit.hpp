@@ -19,9 +19,10 @@ namespace nearpose::simulate {
 
 struct SensorFitOptions {
     std::optional<PixelBox> region;  // else the whole image
-    double same_pose_m = 0.002;      // planes are of one pose where they differ by less in all corners of the region
-    int min_pixels = 500;            // of a frame, with depth
-    double max_rms_ratio = 5.0;      // of structured residuals, to what is expected
+    double same_pose_m =
+        0.002;             // planes are of one pose where they differ by less, at the depth of the region's middle
+    int min_pixels = 500;  // of a frame, with depth
+    double max_rms_ratio = 5.0;  // of structured residuals, to what is expected
     double max_outlier_share = 0.3;
 };
 

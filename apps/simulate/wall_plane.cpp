@@ -9,7 +9,7 @@ namespace nearpose::simulate {
 namespace {
 
 constexpr double kLeastSigma_m = 1e-4;  // for sensors that claim less
-constexpr int kMaxSamples = 20000;      // a plane of so many pixels lies within 1 % of the noise
+constexpr int kMaxSamples = 6000;       // a plane of so many pixels lies within 3 % of the noise
 constexpr int kBlock = 8;               // [pixels]
 
 struct Sample {
@@ -80,13 +80,24 @@ WallPlane reweighted(const std::vector<Sample>& samples, const WallPlane& before
     return {normal.ldlt().solve(right)};
 }
 
+// Until the plane moves by less than that part of its distance.
+template <typename Weight>
+WallPlane settled(const std::vector<Sample>& samples, WallPlane plane, const Weight& weight, double part, int rounds) {
+    for (int i = 0; i < rounds; ++i) {
+        const WallPlane before = plane;
+        plane = reweighted(samples, before, weight);
+        if ((plane.inverse_m - before.inverse_m).norm() < part * plane.inverse_m.norm()) break;
+    }
+    return plane;
+}
+
 WallPlane robust_plane(const std::vector<Sample>& samples) {
     std::vector<double> depths;
     for (const Sample& sample : samples) depths.push_back(sample.depth_m);
     WallPlane plane{Eigen::Vector3d(0.0, 0.0, 1.0 / median(std::move(depths)))};
     plane = reweighted(samples, plane, [](double, double) { return 1.0; });
-    for (int i = 0; i < 15; ++i) plane = reweighted(samples, plane, huber_weight);
-    for (int i = 0; i < 10; ++i) plane = reweighted(samples, plane, tukey_weight);
+    plane = settled(samples, plane, huber_weight, 1e-5, 15);
+    plane = settled(samples, plane, tukey_weight, 1e-7, 10);
     return plane;
 }
 
