@@ -111,6 +111,7 @@ FittedFigure count_independent(Measured& measured) {
     const double error = 1.96 / std::sqrt(std::max(1.0, freedom / growth));
     correlation.low = correlation_for(mean - error);
     correlation.high = correlation_for(mean + error);
+    if (mean < error) correlation.value = correlation.low = 0.0;  // not told from independent pixels
     for (NoiseCell& cell : measured.cells) cell.effective = cell.freedom / growth;
     std::erase_if(measured.cells, [](const NoiseCell& cell) { return cell.effective < kLeastEffective; });
     if (measured.cells.empty()) {
@@ -120,13 +121,16 @@ FittedFigure count_independent(Measured& measured) {
     return correlation;
 }
 
-// The field of fixed error is smooth: it has about as many independent values as nodes, less the plane that was taken
-// off.
+// The field of fixed error is smooth: nodes joined by a bicubic B-spline, whose autocorrelation is nearly a Gaussian of
+// variance 2/3 in nodes. So every pi * 2/3 nodes count as one independent value, and a plane's three smooth shapes have
+// taken 3 * 2 pi * 2/3 nodes' worth of its variance with them, which is given back here.
 FittedFigure bias_figure(const Wall& wall, const Measured& measured, const SensorNoise& base) {
     if (!wall.separated) return {};
-    const double value_m = std::sqrt(std::max(0.0, measured.bias_square_sum / measured.bias_pixels));
     const double nodes = wall.size() / (base.bias_length_pixels * base.bias_length_pixels);
-    const double share = std::min(1.0, 1.96 / std::sqrt(2.0 * std::max(1.0, nodes - 3.0)));
+    const double left = std::max(0.5, 1.0 - 4.0 * M_PI / nodes);
+    const double value_m = std::sqrt(std::max(0.0, measured.bias_square_sum / measured.bias_pixels / left));
+    const double independent = std::max(1.0, nodes / (M_PI * 2.0 / 3.0) - 3.0);
+    const double share = std::min(1.0, 1.96 / std::sqrt(2.0 * independent));
     return {value_m, value_m * (1.0 - share), value_m * (1.0 + share), true};
 }
 
