@@ -1,5 +1,7 @@
 #include "apps/experiment/setting.hpp"
 
+#include <cmath>
+
 #include "apps/compare/view_cell.hpp"
 #include "apps/data_set/number_text.hpp"
 #include "apps/estimator_setup.hpp"
@@ -98,8 +100,7 @@ std::string joined(const Words& words) {
 double read_number(const SettingRule& rule, const data_set::JsonValue& value) {
     const double number = rule.type == SettingType::kWhole ? value.integer() : value.number();
     if (number >= rule.low && number <= rule.high) return number;
-    throw value.error("is " + data_set::format_number(number) + ", but must be in " +
-                      data_set::format_number(rule.low) + ".." + data_set::format_number(rule.high));
+    throw value.error("is " + text_of(number) + ", but must be in " + text_of(rule.low) + ".." + text_of(rule.high));
 }
 
 }  // namespace
@@ -158,7 +159,10 @@ Settings used_for(TableKind kind, SettingUse use, const Settings& settings) {
 
 std::string text_of(const Value& value) {
     if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "on" : "off";
-    if (const double* number = std::get_if<double>(&value)) return data_set::format_number(*number);
+    if (const double* number = std::get_if<double>(&value)) {
+        const bool whole = std::abs(*number) < 1e15 && *number == std::floor(*number);
+        return whole ? std::to_string(static_cast<long long>(*number)) : data_set::format_number(*number);
+    }
     return std::get<std::string>(value);
 }
 
