@@ -194,7 +194,7 @@ void add_options(CLI::App& command, CompareOptions& options) {
     command.get_option("--model")->description("Model file, instead of --part");
     command.add_option("--views", options.views.views, "View generators; spheres: stored views of several radii")
         ->delimiter(',')
-        ->check(CLI::IsMember(compare::compared_views()));
+        ->check(CLI::IsMember(program::view_names()));
     command.add_option("--seeds", options.views.seeds, "Lines of sight and runs: seeds 1 to this")
         ->check(CLI::Range(1, 100'000));
     command

@@ -5,13 +5,14 @@
 #include "core/check.hpp"
 #include "optim/ceres_pose_solver.hpp"
 #include "raycast/embree_view_generator.hpp"
+#include "raycast/nested_spheres_generator.hpp"
 #include "raycast/raster_view_generator.hpp"
 #include "raycast/sphere_view_generator.hpp"
 
 namespace nearpose::program {
 
 const std::vector<std::string>& view_names() {
-    static const std::vector<std::string> names = {"raycast", "raster", "sphere"};
+    static const std::vector<std::string> names = {"raycast", "raster", "sphere", "spheres"};
     return names;
 }
 
@@ -31,8 +32,9 @@ std::shared_ptr<const ViewGenerator> make_view_generator(const EstimatorSetup& s
     }
     if (setup.views == "raycast") return std::make_shared<EmbreeViewGenerator>(mesh);
     if (setup.views == "sphere") return std::make_shared<SphereViewGenerator>(mesh);
+    if (setup.views == "spheres") return std::make_shared<NestedSpheresGenerator>(mesh, nested_spheres());
     if (setup.views != "raster") {
-        throw std::invalid_argument("views '" + setup.views + "': take raycast, raster or sphere");
+        throw std::invalid_argument("views '" + setup.views + "': take raycast, raster, sphere or spheres");
     }
     RasterOptions options;
     if (setup.view_samples) options.num_samples = *setup.view_samples;

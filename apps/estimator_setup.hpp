@@ -15,7 +15,7 @@
 namespace nearpose::program {
 
 // "raycast": rays of the real camera against the mesh; "raster": the paper's rasteriser of surface samples; "sphere": a
-// store of views from a sphere around the object.
+// store of views from a sphere around the object; "spheres": from spheres of several radii.
 const std::vector<std::string>& view_names();
 // "default" and "paper".
 const std::vector<std::string>& method_names();

@@ -5,10 +5,11 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "apps/compare/nested_spheres_generator.hpp"
+#include "apps/estimator_setup.hpp"
 #include "apps/simulate/surface_points.hpp"
 #include "core/check.hpp"
 #include "raycast/embree_view_generator.hpp"
+#include "raycast/nested_spheres_generator.hpp"
 #include "raycast/raster_view_generator.hpp"
 #include "raycast/sphere_view_generator.hpp"
 
@@ -32,19 +33,11 @@ double area_of(const Mesh& mesh) {
     return 0.5 * doubled;
 }
 
-// Radii of the nested spheres [diameters]: from as close as a sphere around the whole object can be, in steps of ratio
-// 1.5, so that no camera between is off by more than 1.22.
-constexpr double kRadii[] = {0.6, 0.9, 1.35, 2.0};
-
 }  // namespace
 
-const std::vector<std::string>& compared_views() {
-    static const std::vector<std::string> names = {"raycast", "raster", "sphere", "spheres"};
-    return names;
-}
-
 void validate(const ViewCell& cell) {
-    if (std::find(compared_views().begin(), compared_views().end(), cell.views) == compared_views().end()) {
+    if (std::find(program::view_names().begin(), program::view_names().end(), cell.views) ==
+        program::view_names().end()) {
         throw std::invalid_argument("views '" + cell.views + "': take raycast, raster, sphere or spheres");
     }
     check_option("view_samples", cell.view_samples, 1, 1e7);
@@ -85,7 +78,7 @@ std::shared_ptr<const ViewGenerator> ViewBench::make_generator(const ViewCell& c
     }
     if (cell.views == "spheres") {
         std::vector<SphereOptions> spheres;
-        for (const double radius : kRadii) spheres.push_back(sphere(radius));
+        for (const double radius : kNestedRadii_diameters) spheres.push_back(sphere(radius));
         return std::make_shared<NestedSpheresGenerator>(mesh_, spheres);
     }
     return std::make_shared<EmbreeViewGenerator>(mesh_);

@@ -15,12 +15,9 @@
 
 namespace nearpose::compare {
 
-// "raycast", "raster", "sphere": the program's three; "spheres": stored views from several radii.
-const std::vector<std::string>& compared_views();
-
 // The camera looks at a point of the upper face from the sweep scenario's line of sight.
 struct ViewCell {
-    std::string views = "raycast";
+    std::string views = "raycast";  // one of program::view_names
     // Of the rasteriser, on the whole surface. The images that view spheres store get the resolution that puts as many
     // points on a square metre that faces the camera; ray casting has no samples.
     int view_samples = 20000;

@@ -6,12 +6,13 @@
 #include <vector>
 
 #include "apps/compare/view_cell.hpp"
+#include "apps/estimator_setup.hpp"
 #include "apps/experiment/results.hpp"
 
 namespace nearpose::compare {
 
 struct ViewTableOptions {
-    std::vector<std::string> views = compared_views();
+    std::vector<std::string> views = program::view_names();
     std::vector<int> samples = {5000, 20000, 100000};  // ray casting has none and is in the table once
     std::vector<double> distances_mm = {600.0, 400.0, 300.0, 250.0, 200.0, 150.0, 100.0};
     int seeds = 20;  // lines of sight: 1 to this

@@ -84,7 +84,7 @@ void add_view_rules(std::vector<SettingRule>& rules) {
     add("part", SettingType::kWord, 0, 0, simulate::part_names(), "engine_block");
     add("model", SettingType::kWord, 0, 0, {}, {});
     add("unit", SettingType::kWord, 0, 0, kUnits, {});
-    add("views", SettingType::kWord, 0, 0, compare::compared_views(), usual.views);
+    add("views", SettingType::kWord, 0, 0, program::view_names(), usual.views);
     add("view_samples", SettingType::kWhole, 1, 1e8, {}, static_cast<double>(usual.view_samples));
     add("distance_mm", SettingType::kNumber, 1.0, 1e5, {}, usual.distance_mm);
     add("max_rays", SettingType::kWhole, 1, 1e7, {}, static_cast<double>(usual.max_rays));

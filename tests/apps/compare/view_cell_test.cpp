@@ -1,9 +1,10 @@
 // Cells of the comparison of views.
 #include "apps/compare/view_cell.hpp"
 
-#include "apps/compare/nested_spheres_generator.hpp"
+#include "apps/estimator_setup.hpp"
 #include "apps/simulate/parts.hpp"
 #include "apps/simulate/recording.hpp"
+#include "raycast/nested_spheres_generator.hpp"
 #include "raycast/raster_view_generator.hpp"
 #include "tests/raycast/shapes.hpp"
 
@@ -35,7 +36,7 @@ ViewCell quick(const std::string& views) {
 
 TEST(ViewCell, SaysTheSameOfTheSameSettings) {
     const ViewBench bench = box_bench();
-    for (const std::string& views : compared_views()) {
+    for (const std::string& views : program::view_names()) {
         const auto first = bench.numbers(quick(views));
         const auto again = box_bench().numbers(quick(views));
         for (const char* name : {"points_per_view", "pixels_per_view", "wrong_percent", "hidden_percent",

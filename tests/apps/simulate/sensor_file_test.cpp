@@ -88,7 +88,7 @@ TEST(SensorFile, ErrorsNameFileKeyValueAndBound) {
     has(problem_of(replaced(good, "\"jitter_pixels\": 0.5,", "")), "noise: lacks the key \"jitter_pixels\"");
     has(problem_of(replaced(good, "\"jitter_pixels\": 0.5", "\"jitter_pixels\": 500")),
         "sensor.jitter_pixels is 500, but must be in 0..100");
-    has(problem_of(replaced(good, "\"fx\": 404", "\"fx\": 0")), "fx");
+    has(problem_of(replaced(good, "\"fx\": 382.3", "\"fx\": 0")), "fx");
     has(problem_of(replaced(good, "\"depth_scale_mm\": 0.1", "\"depth_scale_mm\": -1")), "depth_scale_mm is -1");
     has(problem_of(replaced(good, "\"format\": 1", "\"format\": 2")), "format: is 2, but must be 1");
     has(problem_of(replaced(good, "\"edge_radius_pixels\": 2", "\"edge_radius_pixels\": 2.5")), "edge_radius_pixels");

@@ -5,7 +5,13 @@
 
 #include "raycast/sphere_view_generator.hpp"
 
-namespace nearpose::compare {
+namespace nearpose {
+
+// Radii [diameters] from as close as a sphere around the whole object can be, in steps of ratio 1.5, so that no camera
+// between is off by more than 1.22.
+inline constexpr double kNestedRadii_diameters[] = {0.6, 0.9, 1.35, 2.0};
+// Spheres of these radii, else by default.
+std::vector<SphereOptions> nested_spheres();
 
 // A store of views from a single radius gets the perspective wrong wherever the camera is nearer or farther. Here the
 // sphere whose radius is nearest to the camera's distance (by ratio) gives the view, so that distance, yaw, pitch and
@@ -26,4 +32,4 @@ class NestedSpheresGenerator : public ViewGenerator {
     std::vector<SphereViewGenerator> spheres_;
 };
 
-}  // namespace nearpose::compare
+}  // namespace nearpose

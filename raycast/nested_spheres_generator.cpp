@@ -1,9 +1,18 @@
-#include "apps/compare/nested_spheres_generator.hpp"
+#include "raycast/nested_spheres_generator.hpp"
 
 #include <cmath>
 #include <stdexcept>
 
-namespace nearpose::compare {
+namespace nearpose {
+
+std::vector<SphereOptions> nested_spheres() {
+    std::vector<SphereOptions> spheres;
+    for (const double radius : kNestedRadii_diameters) {
+        spheres.emplace_back();
+        spheres.back().radius_in_diameters = radius;
+    }
+    return spheres;
+}
 
 NestedSpheresGenerator::NestedSpheresGenerator(const Mesh& mesh, const std::vector<SphereOptions>& spheres) {
     if (spheres.empty()) throw std::invalid_argument("nested spheres: there must be at least one");
@@ -31,4 +40,4 @@ View NestedSpheresGenerator::generate(const Pose& camera_from_object, const Pinh
     return sphere_of(camera_from_object).generate(camera_from_object, camera);
 }
 
-}  // namespace nearpose::compare
+}  // namespace nearpose
