@@ -7,4 +7,4 @@ shift || true
 bash third_party_notes/install_packages.sh build test
 cmake --preset "$preset" -DNEARPOSE_TESTS=ON >/dev/null  # the demo turns them off
 cmake --build --preset "$preset"
-ctest --test-dir "build/$preset" --output-on-failure --no-tests=error "$@"
+ctest --test-dir "build/$preset" --output-on-failure --no-tests=error -j "$(nproc)" "$@"
