@@ -3,7 +3,10 @@
 # Does nothing, and needs no rights, where all are there.
 set -euo pipefail
 list=$(dirname "${BASH_SOURCE[0]}")/packages.txt
-installed() { dpkg-query -W -f '${Status}' "$1" 2>/dev/null | grep -q 'ok installed'; }
+# There itself, or provided by another package: NodeSource's nodejs holds npm and conflicts with Debian's.
+here=" $(dpkg-query -W -f '${db:Status-Status} ${Package}, ${Provides}\n' 2>/dev/null |
+    sed -n 's/^installed //p' | sed 's/([^)]*)//g' | tr -s ', \n' ' ') "
+installed() { [[ $here == *" $1 "* ]]; }
 
 missing=()
 for kind in "$@"; do
