@@ -8,15 +8,6 @@
 #include "apps/run_folder.hpp"
 
 namespace nearpose::program {
-namespace {
-
-// Returns the path; its folder exists afterwards.
-const std::filesystem::path& with_folder(const std::filesystem::path& file) {
-    if (file != "-" && file.has_parent_path()) data_set::create_folder(file.parent_path());
-    return file;
-}
-
-}  // namespace
 
 OutputOptions with_run_folder(OutputOptions options) {
     if (options.run.empty()) return options;
@@ -42,16 +33,16 @@ void check(const OutputOptions& given) {
 }
 
 EstimateOutputs::EstimateOutputs(const OutputOptions& options, const RunDescription& run, const Mesh& mesh)
-    : options_(options), scene_id_(run.scene_id), object_id_(run.object_id), csv_(with_folder(options.out)) {
+    : options_(options), scene_id_(run.scene_id), object_id_(run.object_id), csv_(data_set::with_folder(options.out)) {
     if (!options.log.empty()) {
-        log_.emplace(with_folder(options.log));
+        log_.emplace(data_set::with_folder(options.log));
         log_->append(first_log_line(run));
     }
     if (!options.run.empty()) {
-        particles_.emplace(with_folder(options.run / kParticlesFile));
+        particles_.emplace(data_set::with_folder(options.run / kParticlesFile));
         particles_->append(first_particles_line());
     }
-    if (!options.trajectory.empty()) trajectory_.emplace(with_folder(options.trajectory));
+    if (!options.trajectory.empty()) trajectory_.emplace(data_set::with_folder(options.trajectory));
     if (!options.pictures.empty()) {
         data_set::create_folder(options.pictures);
         scene_.emplace(mesh);

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <memory>
-#include <numbers>
 
 #include "apps/console.hpp"
 #include "apps/data_set/file_io.hpp"
 #include "apps/data_set/trajectory_tum.hpp"
+#include "apps/degrees.hpp"
 #include "apps/evaluation/error_curves.hpp"
 #include "apps/evaluation/estimates.hpp"
 #include "apps/evaluation/summary_text.hpp"
@@ -19,13 +19,11 @@ namespace {
 
 using evaluation::FrameErrors;
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
-
 struct EvaluateOptions {
     std::filesystem::path scene, models, results, log;
     std::filesystem::path out, json, plot, curves, calibration, trajectories;
     int object = 1;
-    std::optional<int> scene_id, first, last;
+    std::optional<int> scene_id, mask_index, first, last;
     int burn_in = evaluation::SummaryOptions{}.burn_in;
     double within_mm = 10.0, within_deg = 5.0;
 };
@@ -45,14 +43,8 @@ void check(const EvaluateOptions& options) {
     }
 }
 
-// Returns the path; its folder exists afterwards.
-const std::filesystem::path& with_folder(const std::filesystem::path& file) {
-    if (file.has_parent_path()) data_set::create_folder(file.parent_path());
-    return file;
-}
-
 void write_text(const std::filesystem::path& path, const std::string& text) {
-    if (!path.empty() && path != "-") data_set::write_file_atomically(with_folder(path), text);
+    if (!path.empty() && path != "-") data_set::write_file_atomically(data_set::with_folder(path), text);
 }
 
 void write_error_plot(const EvaluateOptions& options, const std::vector<FrameErrors>& frames) {
@@ -63,8 +55,8 @@ void write_error_plot(const EvaluateOptions& options, const std::vector<FrameErr
         if (frame.errors) point.translation_mm = 1e3 * frame.errors->translation_m;
         if (frame.errors) point.rotation_deg = kDegrees * frame.errors->rotation_rad;
     }
-    pictures::write_error_plot(with_folder(options.plot), "Pose error, object " + std::to_string(options.object),
-                               points);
+    pictures::write_error_plot(data_set::with_folder(options.plot),
+                               "Pose error, object " + std::to_string(options.object), points);
 }
 
 // The curves are of the frames after the burn-in, as the statistics are.
@@ -79,14 +71,14 @@ void write_curves(const EvaluateOptions& options, const evaluation::SceneTruth& 
                 "--curves: no frame after the burn-in has both a pose and visible points" +
                 (truth.visibility_problem.empty() ? std::string() : " (" + truth.visibility_problem + ")"));
         }
-        pictures::write_curve_plots(with_folder(options.curves), plots);
+        pictures::write_curve_plots(data_set::with_folder(options.curves), plots);
     }
     if (!options.calibration.empty()) {
         const auto plots = evaluation::calibration_curves(settled);
         if (plots.empty()) {
             throw std::runtime_error(options.log.string() + ": has no covariance of a frame after the burn-in");
         }
-        pictures::write_curve_plots(with_folder(options.calibration), plots);
+        pictures::write_curve_plots(data_set::with_folder(options.calibration), plots);
     }
 }
 
@@ -115,7 +107,7 @@ int evaluate(const EvaluateOptions& options, const SharedOptions& shared) {
     which.scene_id = options.scene_id;
     which.first_frame = options.first;
     which.last_frame = options.last;
-    evaluation::SceneTruth truth = evaluation::read_truth(options.scene, options.object, which);
+    evaluation::SceneTruth truth = evaluation::read_truth(options.scene, options.object, which, options.mask_index);
     evaluation::Estimates estimates = evaluation::read_estimates(options.results, truth);
     if (!options.log.empty()) evaluation::add_log(options.log, estimates);
     const evaluation::ModelShape shape = evaluation::load_shape(options.models, options.object);
@@ -155,14 +147,17 @@ void add_evaluate_command(CLI::App& app, const SharedOptions& shared, Run& run) 
     CLI::App* command = app.add_subcommand("evaluate", "Errors of a result file against the scene's true poses");
     command->footer(
         "The translation error is that of the centre of the model's box. Of the poses in which a symmetric part looks\n"
-        "the same, the one counts in which the corners of its box are nearest to the estimate's. ADD, ADD-S (ADI), "
-        "MSSD\n"
-        "and MSPD are bop_toolkit's, over the vertices of models_eval beside --models where there is that folder.");
+        "the same, the one counts in which the corners of its box are nearest to the estimate's. ADD, ADD-S (ADI),\n"
+        "MSSD and MSPD are bop_toolkit's, over the vertices of models_eval beside --models where there is that "
+        "folder.");
     command->add_option("--scene", options->scene, "Folder of a BOP scene with scene_gt.json")->required();
     command->add_option("--models", options->models, "Folder of BOP models with models_info.json")->required();
     command->add_option("--object", options->object, "Number of the object");
     command->add_option("--results", options->results, "BOP result file")->required();
     command->add_option("--log", options->log, "Log of the same estimation, for covariances and predicted frames");
+    command
+        ->add_option("--mask-index", options->mask_index, "Of several copies, that at this index of the frame's list")
+        ->check(CLI::Range(0, 999'999));
     command->add_option("--scene-id", options->scene_id, "scene_id of the results [the folder's number]");
     command->add_option("--first", options->first, "Number of the first frame [the scene's first]");
     command->add_option("--last", options->last, "Number of the last frame [the scene's last]");

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 using experiment::Description;
 using experiment::Unit;
 
-struct CommandOptions {
+struct ExperimentOptions {
     fs::path description, out;
     std::string shard = "1/1";
     int threads = 0;
@@ -32,7 +32,7 @@ struct CommandOptions {
 };
 
 // The description with what the command line leaves of it.
-Description read(const CommandOptions& options) {
+Description read(const ExperimentOptions& options) {
     Description description = experiment::read_description(options.description);
     std::vector<std::string> names;
     for (experiment::TableSpec& table : description.tables) {
@@ -119,7 +119,7 @@ std::string lacking(const std::vector<int>& missing) {
 }
 
 // False where it was interrupted.
-bool run_shard(const std::vector<Unit>& units, const CommandOptions& options, const experiment::Shard& shard,
+bool run_shard(const std::vector<Unit>& units, const ExperimentOptions& options, const experiment::Shard& shard,
                const SharedOptions& shared) {
     const experiment::RunOptions run{options.out, shard, options.threads, options.again};
     const std::vector<Unit> work = experiment::work_of(units, run);
@@ -143,7 +143,7 @@ bool run_shard(const std::vector<Unit>& units, const CommandOptions& options, co
     return false;
 }
 
-int run_experiment(const CommandOptions& options, const SharedOptions& shared) {
+int run_experiment(const ExperimentOptions& options, const SharedOptions& shared) {
     experiment::Shard shard;
     try {
         shard = experiment::parse_shard(options.shard);
@@ -179,7 +179,7 @@ int run_experiment(const CommandOptions& options, const SharedOptions& shared) {
     return kFailure;
 }
 
-void add_options(CLI::App& command, CommandOptions& options) {
+void add_options(CLI::App& command, ExperimentOptions& options) {
     command.add_option("description", options.description, "What to run: FILE.json")->required();
     command.add_option("--out", options.out, "Folder of the cells and the results; a run goes on where it ended")
         ->required();
@@ -201,7 +201,7 @@ void add_options(CLI::App& command, CommandOptions& options) {
 }  // namespace
 
 void add_experiment_command(CLI::App& app, const SharedOptions& shared, Run& run) {
-    auto options = std::make_shared<CommandOptions>();
+    auto options = std::make_shared<ExperimentOptions>();
     CLI::App* command = app.add_subcommand("experiment", "A grid of simulated runs, with tables and curves");
     command->footer(
         "A cell is one row of a table with one seed. Finished cells are not run again unless their settings have\n"

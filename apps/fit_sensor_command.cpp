@@ -22,7 +22,7 @@ using simulate::FittedFigure;
 using simulate::SensorFit;
 using simulate::WallGroup;
 
-struct CommandOptions {
+struct FitSensorOptions {
     std::filesystem::path scene, out;
     std::string base = "close_stereo";
     std::string name;
@@ -36,7 +36,7 @@ struct Recording {
     int unread = 0;
 };
 
-Recording read_recording(const CommandOptions& command) {
+Recording read_recording(const FitSensorOptions& command) {
     data_set::SceneOptions options;
     options.scene_id = 0;  // of no concern: the folder may have any name
     options.first_frame = command.first;
@@ -58,7 +58,7 @@ Recording read_recording(const CommandOptions& command) {
     return recording;
 }
 
-std::optional<PixelBox> region_of(const CommandOptions& command, const PinholeCamera& camera) {
+std::optional<PixelBox> region_of(const FitSensorOptions& command, const PinholeCamera& camera) {
     if (command.region.empty()) return std::nullopt;
     const int u = command.region[0], v = command.region[1], width = command.region[2], height = command.region[3];
     if (u < 0 || v < 0 || width < 1 || height < 1 || u > camera.width - width || v > camera.height - height) {
@@ -149,7 +149,7 @@ std::string origin_of(const SensorFit& fit) {
            span_text(near_m, far_m, 2) + " m, up to " + format_fixed(degrees(steepest_rad), 0) + " degrees";
 }
 
-simulate::SensorDescription description_of(const CommandOptions& command, const simulate::SensorDescription& base,
+simulate::SensorDescription description_of(const FitSensorOptions& command, const simulate::SensorDescription& base,
                                            const Recording& recording, const SensorFit& fit) {
     simulate::SensorDescription sensor = base;
     const std::string origin = origin_of(fit);
@@ -170,7 +170,7 @@ simulate::SensorDescription description_of(const CommandOptions& command, const 
     return sensor;
 }
 
-int fit_sensor(const CommandOptions& command, const SharedOptions& shared) {
+int fit_sensor(const FitSensorOptions& command, const SharedOptions& shared) {
     const simulate::SensorDescription base = simulate::read_sensor(command.base);
     const Recording recording = read_recording(command);
     simulate::SensorFitOptions options;
@@ -192,7 +192,7 @@ int fit_sensor(const CommandOptions& command, const SharedOptions& shared) {
 }  // namespace
 
 void add_fit_sensor_command(CLI::App& app, const SharedOptions& shared, Run& run) {
-    auto options = std::make_shared<CommandOptions>();
+    auto options = std::make_shared<FitSensorOptions>();
     CLI::App* command = app.add_subcommand("fit-sensor", "Sensor file from frames of a flat wall");
     command->add_option("--scene", options->scene, "BOP scene folder: scene_camera.json and depth/")->required();
     command->add_option("--region", options->region, "Pixels that show the wall: U V W H [the whole image]")

@@ -15,12 +15,12 @@ namespace {
 
 constexpr const char* kResultsFile = "results.json";
 
-struct ReportCommandOptions {
+struct ReportOptions {
     std::filesystem::path folder, out;
     report::RunReportOptions run;
 };
 
-report::Report make_report(const ReportCommandOptions& options, const SharedOptions& shared) {
+report::Report make_report(const ReportOptions& options, const SharedOptions& shared) {
     const auto notice = [&](const std::string& text) { print_notice(text, shared.quiet); };
     if (std::filesystem::exists(options.folder / kRunFile))
         return report::run_report(options.folder, options.run, notice);
@@ -32,7 +32,7 @@ report::Report make_report(const ReportCommandOptions& options, const SharedOpti
                              " (of nearpose estimate --run DIR) nor " + kResultsFile + " (of nearpose experiment)");
 }
 
-int report_folder(const ReportCommandOptions& options, const SharedOptions& shared) {
+int report_folder(const ReportOptions& options, const SharedOptions& shared) {
     if (!report::viewer_available()) report::page("", "");  // throws and says what is missing, before the work
     const report::Report made = make_report(options, shared);
     const std::filesystem::path out = options.out.empty() ? options.folder / "report.html" : options.out;
@@ -52,7 +52,7 @@ int report_folder(const ReportCommandOptions& options, const SharedOptions& shar
 }  // namespace
 
 void add_report_command(CLI::App& app, const SharedOptions& shared, Run& run) {
-    auto options = std::make_shared<ReportCommandOptions>();
+    auto options = std::make_shared<ReportOptions>();
     CLI::App* command =
         app.add_subcommand("report", "One HTML file about a run or an experiment, to look at and hand on");
     command->footer("The file needs no network and nothing beside it.");

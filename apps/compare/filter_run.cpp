@@ -9,24 +9,11 @@
 namespace nearpose::compare {
 namespace {
 
-std::vector<Eigen::Vector3f> points_in(const Mask& mask, const DepthImage& depth, const PinholeCamera& camera) {
-    std::vector<Eigen::Vector3f> points_in_camera;
-    for (int v = 0; v < depth.height; ++v) {
-        for (int u = 0; u < depth.width; ++u) {
-            const auto pixel = static_cast<std::size_t>(v * depth.width + u);
-            if (mask.value[pixel] == 0 || !(depth.depth_m[pixel] > 0.0F)) continue;
-            points_in_camera.push_back((static_cast<double>(depth.depth_m[pixel]) * camera.ray(u, v)).cast<float>());
-        }
-    }
-    return points_in_camera;
-}
-
 FilterFrame frame_of(const simulate::Recording& recording, int index) {
     const simulate::SimulatedFrame frame = recording.frame(index);
     const PinholeCamera& camera = recording.options().camera;
-    evaluation::TrueFrame truth{frame.id, frame.camera_from_object, std::nullopt};
-    const std::vector<Eigen::Vector3f> points = points_in(frame.visible, frame.depth, camera);
-    if (!points.empty()) truth.visibility = evaluation::visibility_of(points);
+    const evaluation::TrueFrame truth{frame.id, frame.camera_from_object,
+                                      evaluation::visibility_of(frame.depth, frame.visible, camera)};
     return {frame.id, make_observation(frame.depth, camera, frame.given_mask), frame.camera_from_world, truth};
 }
 

@@ -128,6 +128,11 @@ void create_folder(const std::filesystem::path& folder) {
     if (!std::filesystem::is_directory(folder, error)) throw std::runtime_error(folder.string() + ": is not a folder");
 }
 
+const std::filesystem::path& with_folder(const std::filesystem::path& file) {
+    if (file.has_parent_path()) create_folder(file.parent_path());  // "-" has none
+    return file;
+}
+
 RowFile::RowFile(const std::filesystem::path& path) : name_(path == "-" ? "standard output" : path.string()) {
     if (path == "-") {
         descriptor_ = STDOUT_FILENO;

@@ -29,6 +29,8 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view b
 
 // Creates the folder and its parents; throws std::runtime_error that names it.
 void create_folder(const std::filesystem::path& folder);
+// Returns the path of a file to be written; its folder exists afterwards.
+const std::filesystem::path& with_folder(const std::filesystem::path& file);
 
 // A file that is begun anew and grows by whole rows, each handed to the system by itself as soon as it is appended, so
 // that a run that is cut short leaves whole rows. "-" is the standard output.

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxFields = 256;
 constexpr std::uint64_t kMaxFieldCount = 4096;  // values of one field, as of a feature histogram
-constexpr std::size_t kMaxHeaderLines = 100;
+constexpr std::size_t kMaxPcdHeaderLines = 100;
 
 // LZF makes at most 264 bytes out of 3.
 constexpr std::uint64_t kMaxLzfRatio = 88;
@@ -35,7 +35,7 @@ using Entries = std::map<std::string, std::vector<std::string>, std::less<>>;
 // The header's lines by their first word, up to and with DATA.
 Entries read_entries(std::string_view bytes, std::size_t& position, const std::string& file) {
     Entries entries;
-    for (std::size_t number = 0; number < kMaxHeaderLines; ++number) {
+    for (std::size_t number = 0; number < kMaxPcdHeaderLines; ++number) {
         const std::vector<std::string_view> parts = words(header_line(bytes, position, file));
         if (parts.empty() || parts[0].front() == '#') continue;
         const auto [entry, is_new] = entries.try_emplace(std::string(parts[0]), parts.begin() + 1, parts.end());
@@ -91,7 +91,7 @@ void read_fields(const Entries& entries, const std::string& file, PcdHeader& hea
     }
 }
 
-PcdHeader read_header(std::string_view bytes, const std::string& file) {
+PcdHeader read_pcd_header(std::string_view bytes, const std::string& file) {
     PcdHeader header;
     const Entries entries = read_entries(bytes, header.data_begin, file);
     read_fields(entries, file, header);
@@ -159,7 +159,7 @@ std::vector<Eigen::Vector3f> read_compressed(std::string_view data, const PcdHea
 }  // namespace
 
 CloudFile read_pcd(std::string_view bytes, const std::string& file) {
-    const PcdHeader header = read_header(bytes, file);
+    const PcdHeader header = read_pcd_header(bytes, file);
     const std::string_view data = bytes.substr(header.data_begin);
     CloudFile cloud{static_cast<int>(header.width), static_cast<int>(header.height), {}};
     if (header.encoding == "ascii") {

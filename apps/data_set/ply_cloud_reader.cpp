@@ -10,7 +10,7 @@
 namespace nearpose::data_set {
 namespace {
 
-constexpr std::size_t kMaxHeaderLines = 1000;
+constexpr std::size_t kMaxPlyHeaderLines = 1000;
 
 struct PlyHeader {
     CoordinateFields coordinates;
@@ -56,11 +56,11 @@ std::uint64_t vertex_count(std::string_view text, const std::string& file) {
 }
 
 // The vertices must come first, as every writer has them; what follows them (faces) is left alone.
-PlyHeader read_header(std::string_view bytes, const std::string& file) {
+PlyHeader read_ply_header(std::string_view bytes, const std::string& file) {
     PlyHeader header;
     if (header_line(bytes, header.data_begin, file) != "ply") throw std::runtime_error(file + ": is not a PLY file");
     int elements = 0;
-    for (std::size_t number = 0; number < kMaxHeaderLines; ++number) {
+    for (std::size_t number = 0; number < kMaxPlyHeaderLines; ++number) {
         const std::vector<std::string_view> parts = words(header_line(bytes, header.data_begin, file));
         if (parts.empty() || parts[0] == "comment" || parts[0] == "obj_info") continue;
         if (parts[0] == "end_header") {
@@ -88,7 +88,7 @@ PlyHeader read_header(std::string_view bytes, const std::string& file) {
 }  // namespace
 
 CloudFile read_ply_cloud(std::string_view bytes, const std::string& file) {
-    const PlyHeader header = read_header(bytes, file);
+    const PlyHeader header = read_ply_header(bytes, file);
     const std::string_view data = bytes.substr(header.data_begin);
     CloudFile cloud{static_cast<int>(header.points), 1, {}};
     if (header.format == "ascii") {

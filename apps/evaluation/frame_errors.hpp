@@ -9,6 +9,7 @@
 
 #include "apps/evaluation/model_shape.hpp"
 #include "core/camera.hpp"
+#include "core/depth_image.hpp"
 #include "core/pose.hpp"
 
 namespace nearpose::evaluation {
@@ -22,6 +23,8 @@ struct Visibility {
 // From the measured points on the part [m], camera frame. The ellipsoid's semi-axes are two standard deviations of the
 // points along their principal axes: 4/3 pi 8 sqrt(l1 l2 l3) with the eigenvalues of their covariance.
 Visibility visibility_of(const std::vector<Eigen::Vector3f>& visible_points_in_camera);
+// From the depth measured in the mask of the visible part, both of `camera`'s size; nothing where none is.
+std::optional<Visibility> visibility_of(const DepthImage& depth, const Mask& visible, const PinholeCamera& camera);
 
 struct TrueFrame {
     int frame_id = 0;

@@ -2,18 +2,17 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 
 #include "apps/data_set/file_io.hpp"
 #include "apps/data_set/number_text.hpp"
 #include "apps/data_set/text_split.hpp"
+#include "apps/degrees.hpp"
 #include "apps/evaluation/frame_errors.hpp"
 
 namespace nearpose::evaluation {
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr int kDecimals = 8;
 constexpr std::uintmax_t kMaxTableBytes = std::uintmax_t{1} << 30;
 

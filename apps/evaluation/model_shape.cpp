@@ -46,7 +46,8 @@ ModelShape shape_of(const data_set::ModelInfo& info, const Mesh& mesh) {
 }
 
 ModelShape load_shape(const std::filesystem::path& models_folder, int object_id) {
-    const std::filesystem::path beside = std::filesystem::weakly_canonical(models_folder).parent_path() / "models_eval";
+    const std::filesystem::path beside =
+        std::filesystem::absolute(models_folder / "..").lexically_normal() / "models_eval";
     const std::filesystem::path folder = std::filesystem::is_directory(beside) ? beside : models_folder;
     const bool own_info = std::filesystem::exists(folder / "models_info.json");
     const data_set::ModelInfo info = data_set::read_model_info(own_info ? folder : models_folder, object_id);

@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
+#include "apps/degrees.hpp"
 #include "core/random.hpp"
 
 namespace nearpose::evaluation {
 namespace {
 
 constexpr double kMillimetres = 1e3;
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kNormal975 = 1.9599639845400545;  // quantile of the normal distribution
 
 // The streams of this module beside the estimator's and the simulation's own.

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "apps/data_set/number_text.hpp"
+#include "apps/degrees.hpp"
 
 namespace nearpose::evaluation {
 namespace {
@@ -14,7 +14,6 @@ using data_set::format_fixed;
 using data_set::format_number;
 
 constexpr std::size_t kLabelWidth = 24, kColumnWidth = 10;
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 std::string padded(const std::string& text, std::size_t width = kColumnWidth) {
     return text.size() < width ? std::string(width - text.size(), ' ') + text : text;

@@ -26,4 +26,16 @@ Visibility visibility_of(const std::vector<Eigen::Vector3f>& visible_points_in_c
     return visibility;
 }
 
+std::optional<Visibility> visibility_of(const DepthImage& depth, const Mask& visible, const PinholeCamera& camera) {
+    std::vector<Eigen::Vector3f> points_in_camera;
+    for (int pixel = 0; pixel < camera.width * camera.height; ++pixel) {
+        const auto index = static_cast<std::size_t>(pixel);
+        if (visible.value[index] == 0 || !(depth.depth_m[index] > 0.0F)) continue;
+        const Eigen::Vector3d ray = camera.ray(pixel % camera.width, pixel / camera.width);
+        points_in_camera.emplace_back((static_cast<double>(depth.depth_m[index]) * ray).cast<float>());
+    }
+    if (points_in_camera.empty()) return std::nullopt;
+    return visibility_of(points_in_camera);
+}
+
 }  // namespace nearpose::evaluation

@@ -1,7 +1,7 @@
 // results_of: tables and curves from finished cells.
-#include <numbers>
 #include <stdexcept>
 
+#include "apps/degrees.hpp"
 #include "apps/evaluation/curve.hpp"
 #include "apps/experiment/experiment.hpp"
 #include "apps/experiment/run_setup.hpp"
@@ -10,8 +10,6 @@ namespace nearpose::experiment {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 Row row_of(const TableSpec& table, const RowSpec& row, const fs::path& out) {
     std::vector<Figures> runs;

@@ -1,20 +1,12 @@
 #include "apps/experiment/run_cells.hpp"
 
-#include <time.h>
-
 #include <algorithm>
 
+#include "apps/compare/thread_time.hpp"
 #include "core/estimator.hpp"
 
 namespace nearpose::experiment {
 namespace {
-
-// Of this thread: other runs share the machine.
-double cpu_seconds() {
-    timespec now = {};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 // One estimator on its way through a recording.
 struct Lane {
@@ -33,9 +25,9 @@ class FrameInput {
     const Observation& observation(bool with_mask) {
         std::optional<Observation>& made = observations_[with_mask ? 1 : 0];
         if (!made) {
-            const double begin = cpu_seconds();
+            const double begin = compare::thread_cpu_s();
             made = make_observation(frame_.depth, camera_, with_mask ? std::optional(frame_.given_mask) : std::nullopt);
-            cpu_s_[with_mask ? 1 : 0] = cpu_seconds() - begin;
+            cpu_s_[with_mask ? 1 : 0] = compare::thread_cpu_s() - begin;
         }
         return *made;
     }
@@ -48,26 +40,10 @@ class FrameInput {
     double cpu_s_[2] = {0.0, 0.0};  // that making them took
 };
 
-std::vector<Eigen::Vector3f> visible_points(const simulate::SimulatedFrame& frame, const PinholeCamera& camera) {
-    std::vector<Eigen::Vector3f> points;
-    for (int v = 0; v < camera.height; ++v) {
-        for (int u = 0; u < camera.width; ++u) {
-            const auto pixel =
-                static_cast<std::size_t>(v) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(u);
-            const float depth_m = frame.depth.depth_m[pixel];
-            if (frame.visible.value[pixel] == 0 || !(depth_m > 0.0F)) continue;
-            points.push_back((static_cast<double>(depth_m) * camera.ray(u, v)).cast<float>());
-        }
-    }
-    return points;
-}
-
 evaluation::TrueFrame truth_of(const simulate::SimulatedFrame& frame, const PinholeCamera& camera) {
-    evaluation::TrueFrame truth{frame.id, frame.camera_from_object, std::nullopt};
-    const std::vector<Eigen::Vector3f> points = visible_points(frame, camera);
-    if (points.empty()) return truth;
-    truth.visibility = evaluation::visibility_of(points);
-    if (frame.truth.silhouette_pixels > 0) {
+    evaluation::TrueFrame truth{frame.id, frame.camera_from_object,
+                                evaluation::visibility_of(frame.depth, frame.visible, camera)};
+    if (truth.visibility && frame.truth.silhouette_pixels > 0) {
         truth.visibility->visible_fraction =
             static_cast<double>(frame.truth.visible_pixels) / frame.truth.silhouette_pixels;
     }
@@ -77,10 +53,10 @@ evaluation::TrueFrame truth_of(const simulate::SimulatedFrame& frame, const Pinh
 void track(Lane& lane, FrameInput& input, const std::optional<Pose>& now_from_before,
            const evaluation::TrueFrame& truth, const evaluation::ModelShape& shape, const PinholeCamera& camera) {
     const Observation& observation = input.observation(lane.setup.use_mask);
-    const double begin = cpu_seconds();
+    const double begin = compare::thread_cpu_s();
     const UpdateResult result =
         lane.estimator.update(observation, lane.setup.use_control ? now_from_before : std::nullopt);
-    lane.cpu_s.push_back(cpu_seconds() - begin + input.cpu_s(lane.setup.use_mask));
+    lane.cpu_s.push_back(compare::thread_cpu_s() - begin + input.cpu_s(lane.setup.use_mask));
     std::optional<evaluation::EstimatedFrame> estimate;
     if (result.status != UpdateStatus::kNoPose) {
         estimate.emplace();

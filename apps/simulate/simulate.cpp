@@ -9,6 +9,7 @@
 #include "apps/data_set/bop_scene.hpp"
 #include "apps/data_set/bop_writer.hpp"
 #include "apps/data_set/file_io.hpp"
+#include "apps/data_set/number_text.hpp"
 #include "apps/data_set/png_file.hpp"
 #include "apps/data_set/trajectory_tum.hpp"
 #include "apps/import/import_model.hpp"
@@ -60,9 +61,7 @@ void write_models(const std::map<int, Mesh>& models, const fs::path& data_set_fo
         const fs::path folder = data_set_folder / name;
         data_set::create_folder(folder);
         for (const auto& [id, mesh] : models) {
-            std::string number = std::to_string(id);
-            number.insert(0, 6 - number.size(), '0');
-            save_ply(mesh, folder / ("obj_" + number + ".ply"), LengthUnit::kMillimetre);
+            save_ply(mesh, folder / ("obj_" + data_set::zero_padded(id) + ".ply"), LengthUnit::kMillimetre);
         }
         data_set::write_models_info(folder / "models_info.json", infos);
     }

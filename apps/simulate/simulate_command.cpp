@@ -20,7 +20,7 @@ using simulate::Scenario;
 using simulate::SimulationOptions;
 
 // As on the command line: millimetres, degrees, milliseconds.
-struct CommandOptions {
+struct SimulateOptions {
     std::filesystem::path out;
     bool force = false;
     int threads = 0;
@@ -61,7 +61,7 @@ void require_scenario(bool given, const char* option, Scenario needed, Scenario 
                  simulate::name_of(chosen));
 }
 
-simulate::ScenarioOptions scenario_options(const CommandOptions& command, Scenario scenario) {
+simulate::ScenarioOptions scenario_options(const SimulateOptions& command, Scenario scenario) {
     require_scenario(!command.trajectory.empty(), "--trajectory", Scenario::kHandheld, scenario);
     require_scenario(command.conveyor_mm.has_value(), "--conveyor-mm", Scenario::kConveyor, scenario);
     require_scenario(command.conveyor_deg.has_value(), "--conveyor-deg", Scenario::kConveyor, scenario);
@@ -75,7 +75,7 @@ simulate::ScenarioOptions scenario_options(const CommandOptions& command, Scenar
 }
 
 // The sensor's own camera, unless another one is named.
-void set_sensor(const CommandOptions& command, RecordingOptions& options) {
+void set_sensor(const SimulateOptions& command, RecordingOptions& options) {
     if (!command.sensor.empty()) {
         const simulate::SensorDescription sensor = simulate::read_sensor(command.sensor);
         options.camera = sensor.camera;
@@ -90,7 +90,7 @@ void set_sensor(const CommandOptions& command, RecordingOptions& options) {
     options.sensor = simulate::scaled(options.sensor, command.noise_scale);
 }
 
-SimulationOptions simulation_options(const CommandOptions& command) {
+SimulationOptions simulation_options(const SimulateOptions& command) {
     SimulationOptions options;
     options.data_set = command.out;
     options.replace = command.force;
@@ -111,7 +111,7 @@ SimulationOptions simulation_options(const CommandOptions& command) {
     return options;
 }
 
-simulate::EmbeddedPart part_of(const CommandOptions& command, bool part_given, const SharedOptions& shared) {
+simulate::EmbeddedPart part_of(const SimulateOptions& command, bool part_given, const SharedOptions& shared) {
     if (command.model.model.empty()) {
         if (!command.model.unit.empty()) throw BadUse("--unit belongs to --model: a built-in part needs none");
         return simulate::embedded_part(command.part);
@@ -121,7 +121,7 @@ simulate::EmbeddedPart part_of(const CommandOptions& command, bool part_given, c
     return {mesh, simulate::box_part(extent_of(mesh))};
 }
 
-int simulate_recording(const CommandOptions& command, bool part_given, const SharedOptions& shared) {
+int simulate_recording(const SimulateOptions& command, bool part_given, const SharedOptions& shared) {
     const SimulationOptions options = simulation_options(command);
     const simulate::EmbeddedPart part = part_of(command, part_given, shared);
     const int frames = command.frames == 0 ? simulate::default_frames(options.recording.scenario) : command.frames;
@@ -139,7 +139,7 @@ int simulate_recording(const CommandOptions& command, bool part_given, const Sha
     return kSuccess;
 }
 
-void add_task_options(CLI::App& command, CommandOptions& options) {
+void add_task_options(CLI::App& command, SimulateOptions& options) {
     command
         .add_option("--scenario", options.scenario,
                     "baseline: still, whole part in view; piston: down to a bore; crankcase: the same onto the "
@@ -170,7 +170,7 @@ void add_task_options(CLI::App& command, CommandOptions& options) {
     }
 }
 
-CLI::Option* add_part_options(CLI::App& command, CommandOptions& options) {
+CLI::Option* add_part_options(CLI::App& command, SimulateOptions& options) {
     CLI::Option* part =
         command.add_option("--part", options.part, "Built-in part")->check(CLI::IsMember(simulate::part_names()));
     add_model_file_options(command, options.model);
@@ -179,7 +179,7 @@ CLI::Option* add_part_options(CLI::App& command, CommandOptions& options) {
     return part;
 }
 
-void add_sensor_options(CLI::App& command, CommandOptions& options) {
+void add_sensor_options(CLI::App& command, SimulateOptions& options) {
     std::string names;
     for (const std::string& name : simulate::sensor_names()) names += (names.empty() ? "" : ", ") + name;
     command.add_option("--sensor", options.sensor,
@@ -202,7 +202,7 @@ void add_sensor_options(CLI::App& command, CommandOptions& options) {
     }
 }
 
-void add_arm_options(CLI::App& command, CommandOptions& options) {
+void add_arm_options(CLI::App& command, SimulateOptions& options) {
     const auto add = [&](const char* name, double& value, const char* text, double low, double high) {
         command.add_option(name, value, text)->check(CLI::Range(low, high))->group("Arm");
     };
@@ -218,7 +218,7 @@ void add_arm_options(CLI::App& command, CommandOptions& options) {
 }  // namespace
 
 void add_simulate_command(CLI::App& app, const SharedOptions& shared, Run& run) {
-    auto options = std::make_shared<CommandOptions>();
+    auto options = std::make_shared<SimulateOptions>();
     CLI::App* command = app.add_subcommand("simulate", "Simulated depth recording of a part, as a BOP data set");
     command->add_option("--out", options->out, "Folder of the BOP data set to write")->required();
     command->add_flag("--force", options->force, "Replace a data set that is there already");

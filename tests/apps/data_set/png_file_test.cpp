@@ -116,7 +116,7 @@ TEST(PngFile, AFalseSizeCostsNoMemory) {
 TEST(PngFile, OneLargeChunkIsFine) {
     // Some writers put the whole image in one IDAT; the limit on chunks is for others.
     std::string rows;
-    for (int v = 0; v < 1000; ++v) rows += std::string(1, '\0') + std::string(2400, static_cast<char>(v));
+    for (int v = 0; v < 1000; ++v) rows.append(1, '\0').append(2400, static_cast<char>(v));
     const fs::path file = write_text(new_folder() / "a.png", png_bytes(1200, 1000, 16, 0, rows));
     const CountImage image = read_count_png(file);
     EXPECT_EQ(image.counts[5 * 1200], 5 * 256 + 5);

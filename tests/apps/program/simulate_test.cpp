@@ -60,8 +60,10 @@ TEST(SimulateCommand, TakesACameraPathOfFourDigits) {
     const fs::path folder = fresh_folder("hand");
     data_set::write_camera_json(folder / "camera.json", {96, 72, 90.0, 90.0, 47.5, 35.5}, 0.1);
     std::string rows = "# timestamp tx ty tz qx qy qz qw\n";
-    for (int i = 0; i < 5; ++i)
-        rows += std::to_string(i) + ".0 1.3405 0.6266 1.657" + std::to_string(i) + " 0.6574 0.6126 -0.2949 -0.3248\n";
+    for (int i = 0; i < 5; ++i) {
+        const std::string number = std::to_string(i);
+        rows.append(number).append(".0 1.3405 0.6266 1.657").append(number).append(" 0.6574 0.6126 -0.2949 -0.3248\n");
+    }
     write_text(folder / "hand.tum", rows);
     const std::string command = "simulate --quiet --scenario handheld --fps 2 --camera " +
                                 (folder / "camera.json").string() + " --out " + (folder / "set").string() +
