@@ -147,7 +147,10 @@ int estimate(const EstimateOptions& given, const SharedOptions& shared) {
     EstimateOutputs outputs(options.outputs, describe(options, *source), mesh);
     if (!options.outputs.run.empty()) write_run_record(options.outputs.run, options, source->scene_id());
     if (!source->notice().empty()) print_notice(source->notice(), shared.quiet);
-    if (const auto notice = data_set::bop_file_name_notice(given.outputs.out); notice && !given.outputs.out.empty()) {
+    const std::string data_set_name =  // <data set>/test/<scene>
+        std::filesystem::absolute(options.scene / "../../.").lexically_normal().parent_path().filename().string();
+    if (const auto notice = data_set::bop_file_name_notice(given.outputs.out, data_set_name);
+        notice && !given.outputs.out.empty()) {
         print_notice(*notice, shared.quiet);
     }
 

@@ -62,7 +62,8 @@ std::string box_text(const BopBox& box) {
 std::string info_entry(const ObjectTruth& object) {
     const double fraction =
         object.silhouette_pixels > 0 ? static_cast<double>(object.visible_pixels) / object.silhouette_pixels : 0.0;
-    return "{\"bbox_obj\": " + box_text(object.silhouette_box) + ", \"bbox_visib\": " + box_text(object.visible_box) +
+    const BopBox silhouette_box = object.visible_pixels > 0 ? object.silhouette_box : BopBox{};  // as bop_toolkit
+    return "{\"bbox_obj\": " + box_text(silhouette_box) + ", \"bbox_visib\": " + box_text(object.visible_box) +
            ", \"px_count_all\": " + std::to_string(object.silhouette_pixels) +
            ", \"px_count_valid\": " + std::to_string(object.measured_pixels) +
            ", \"px_count_visib\": " + std::to_string(object.visible_pixels) + ", \"visib_fract\": " + finite(fraction) +
@@ -138,7 +139,7 @@ BopBox box_of(const Mask& mask) {
         }
     }
     if (last_u < 0) return {};
-    return {first_u, first_v, last_u - first_u + 1, last_v - first_v + 1};
+    return {first_u, first_v, last_u - first_u, last_v - first_v};
 }
 
 BopSceneWriter::BopSceneWriter(const fs::path& scene_folder) : folder_(scene_folder) {

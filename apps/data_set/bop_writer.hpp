@@ -52,7 +52,8 @@ void write_scene_gt(const std::filesystem::path& path, const std::vector<FrameRe
 void write_scene_gt_info(const std::filesystem::path& path, const std::vector<FrameRecord>& frames);
 void write_test_targets(const std::filesystem::path& path, const std::vector<TestTarget>& targets);
 
-// The smallest box of the mask's pixels, all -1 for an empty mask.
+// From the first of the mask's pixels to the last, all -1 for an empty mask. As bop_toolkit writes it, a box one pixel
+// wide has the width 0.
 BopBox box_of(const Mask& mask);
 
 // The folder of one scene: images are written as they come, the JSON files by finish(), so that a scene that was cut

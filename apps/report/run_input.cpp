@@ -64,7 +64,8 @@ void read_truth(RunInput& input, const std::function<void(const std::string&)>& 
         notice("the true poses are not known (no scene_gt.json): the report shows no errors");
         return;
     }
-    input.truth = data_set::read_ground_truth(scene, input.record.options.model.object);
+    input.truth =
+        data_set::read_ground_truth(scene, input.record.options.model.object, input.record.options.mask_index);
 }
 
 }  // namespace

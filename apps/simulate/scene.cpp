@@ -53,11 +53,11 @@ InstanceView enter_instance(const EmbreeScene& part, const Pose& camera_from_obj
     const Eigen::Matrix3f rotation = camera_from_object.rotation_matrix().cast<float>();
     const PixelGrid grid{box.first_u, box.first_v, 1, box.last_u - box.first_u, box.last_v - box.first_v};
     const RayHits hits = part.cast(camera_from_object, camera_of(grid, camera));
-    PixelBox silhouette{box.last_u, box.last_v, box.first_u, box.first_v};
+    PixelBox silhouette{box.last_u, box.last_v, box.first_u, box.first_v};  // its last pixels are inside
     for (std::size_t i = 0; i < hits.size(); ++i) {
         const int u = grid.image_u(hits.pixels[i]), v = grid.image_v(hits.pixels[i]);
-        silhouette = {std::min(silhouette.first_u, u), std::min(silhouette.first_v, v),
-                      std::max(silhouette.last_u, u + 1), std::max(silhouette.last_v, v + 1)};
+        silhouette = {std::min(silhouette.first_u, u), std::min(silhouette.first_v, v), std::max(silhouette.last_u, u),
+                      std::max(silhouette.last_v, v)};
         if (u < 0 || v < 0 || u >= camera.width || v >= camera.height) continue;
         const std::size_t pixel = static_cast<std::size_t>(v) * camera.width + u;
         instance.silhouette.value[pixel] = 255;

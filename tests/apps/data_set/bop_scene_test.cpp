@@ -217,6 +217,20 @@ TEST_F(Scene, GroundTruthComesBack) {
     ASSERT_EQ(truth.size(), 1U);
     EXPECT_LT(distance(truth.at(4), records[1].objects[1].camera_from_object), 1e-12);
     expect_error([&] { read_ground_truth(scene_, 3); }, {"scene_gt.json", "object 3"});
+
+    // Of two copies the first counts, or the one that is asked for.
+    records[1].objects.push_back(records[1].objects[1]);
+    records[1].objects[2].camera_from_object = turned(1.0, {0.05, 0.0, 0.4});
+    records[1].objects[2].silhouette_pixels = 8;
+    records[1].objects[2].visible_pixels = 2;
+    write_scene_gt(scene_ / "scene_gt.json", records);
+    write_scene_gt_info(scene_ / "scene_gt_info.json", records);
+    const auto pose_at = [&](std::optional<int> index) { return read_ground_truth(scene_, 9, index).at(4); };
+    EXPECT_LT(distance(pose_at({}), records[1].objects[1].camera_from_object), 1e-12);
+    EXPECT_LT(distance(pose_at(2), records[1].objects[2].camera_from_object), 1e-12);
+    EXPECT_EQ(read_visible_fractions(scene_, 9, 2).at(4), 0.25);
+    expect_error([&] { read_ground_truth(scene_, 9, 0); }, {"scene_gt.json", "object 9 at index 0"});  // another part
+    expect_error([&] { read_ground_truth(scene_, 9, 3); }, {"scene_gt.json", "object 9 at index 3"});
 }
 
 TEST(CameraJson, ComesBack) {

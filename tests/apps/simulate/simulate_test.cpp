@@ -153,7 +153,7 @@ TEST(Simulate, WithoutNoiseTheTruthRendersToTheDepthAndTheMasks) {
             last_u = std::max(last_u, wide.image_u(static_cast<int>(i)));
         }
         EXPECT_EQ(entry.at("bbox_obj").numbers(4)[0], first_u);
-        EXPECT_EQ(entry.at("bbox_obj").numbers(4)[2], last_u - first_u + 1);
+        EXPECT_EQ(entry.at("bbox_obj").numbers(4)[2], last_u - first_u);
     }
 }
 
