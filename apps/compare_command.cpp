@@ -10,7 +10,6 @@
 #include "apps/console.hpp"
 #include "apps/data_set/bop_models.hpp"
 #include "apps/data_set/file_io.hpp"
-#include "apps/data_set/number_text.hpp"
 #include "apps/estimator_setup.hpp"
 #include "apps/experiment/results.hpp"
 #include "apps/model_input.hpp"
@@ -86,20 +85,6 @@ Reach reach_of(const CompareOptions& options) {
     return {1e-3 * *least, 1e-3 * *most};
 }
 
-// What kept runs were made with; another text means that they are not these runs.
-std::string settings_of(const CompareOptions& options) {
-    const std::string part = options.model.model.empty() ? options.part : options.model.model.string();
-    const auto line = [](const std::string& name, const std::string& value) { return name + " " + value + "\n"; };
-    std::string text = line("samples", std::to_string(options.filter_samples));
-    if (!options.scene.empty()) {
-        return text + line("scene", std::filesystem::absolute(options.scene).lexically_normal().string()) +
-               line("object", std::to_string(options.model.object));
-    }
-    const Reach reach = reach_of(options);
-    return text + line("part", part) + line("frames", std::to_string(options.frames)) +
-           line("far_m", data_set::format_number(reach.far_m)) + line("near_m", data_set::format_number(reach.near_m));
-}
-
 // Empty where the user stopped it.
 std::vector<experiment::Table> compare_in_filter(const CompareOptions& options, const simulate::EmbeddedPart& part,
                                                  const compare::ViewBench& bench, bool quiet) {
@@ -108,8 +93,6 @@ std::vector<experiment::Table> compare_in_filter(const CompareOptions& options, 
     table.distances_mm = options.views.distances_mm;
     table.seeds = options.views.seeds;
     table.num_threads = options.views.num_threads;
-    if (!options.out.empty()) table.folder = options.out / "runs";
-    table.settings = settings_of(options);
 
     const Reach reach = reach_of(options);
     std::function<compare::FilterRecording(std::uint64_t)> recording_of = [&](std::uint64_t seed) {
@@ -207,7 +190,7 @@ void add_options(CLI::App& command, CompareOptions& options) {
     command.add_option("--rays", options.views.max_rays, "Rays or pixels of a view, alone")
         ->check(CLI::Range(1, 10'000'000));
     command.add_option("--threads", options.views.num_threads, "Threads; 0: all")->check(CLI::Range(0, 1024));
-    command.add_option("--out", options.out, "Folder for results.json, plots and the filter's runs, which it resumes");
+    command.add_option("--out", options.out, "Folder for results.json and plots");
 }
 
 }  // namespace
@@ -217,6 +200,9 @@ void add_compare_command(CLI::App& app, const SharedOptions& shared, Run& run) {
     CLI::App* command = app.add_subcommand("compare", "Ray casting, rasteriser and stored views, side by side");
     add_options(*command, *options);
     add_filter_options(*command, *options);
+    command->footer(
+        "For grids of hours, which go on where they ended and spread over machines, describe the same for\n"
+        "nearpose experiment: its tables of the kind views, and the setting views of its runs.");
     command->callback([options, command, &shared, &run] {
         const bool part_given = command->count("--part") > 0;
         run = [options, part_given, &shared] { return run_compare(*options, part_given, shared); };

@@ -1,7 +1,6 @@
 // The comparison in the filter: what becomes of the views' faults.
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -20,15 +19,10 @@ struct FilterTableOptions {
     std::string distance_name = "distance of the visible points' mean";
     int seeds = 20;
     int num_threads = 0;
-    // Where each run's table of frames is kept, so that it is not run again; empty: nowhere.
-    std::filesystem::path folder;
-    // What the runs depend on beside filter and seed. A folder of runs with other settings is refused.
-    std::string settings;
 };
 
-// results[filter][seed - 1]: the frames of a run. Throws std::runtime_error for a folder of other settings. Empty where
-// `go_on` said no; what was finished by then is kept in the folder. `run_done` is called once a seed, never twice at
-// the same time.
+// results[filter][seed - 1]: the frames of a run. Empty where `go_on` said no. `run_done` is called once a seed, never
+// twice at the same time. Grids of hours that are to go on where they ended are described for `nearpose experiment`.
 using FilterResults = std::vector<std::vector<std::vector<evaluation::FrameErrors>>>;
 FilterResults filter_results(const std::vector<ComparedFilter>& filters,
                              const std::function<FilterRecording(std::uint64_t)>& recording_of,

@@ -62,7 +62,7 @@ std::vector<std::uint64_t> read_seeds(const JsonValue& value) {
 }
 
 CurveSpec read_curve(const JsonValue& value) {
-    refuse_unknown(value, {"x", "y", "bins", "low", "high", "logarithmic"});
+    refuse_unknown(value, {"x", "y", "bins", "low", "high", "logarithmic", "burn_in"});
     CurveSpec curve;
     curve.x = word_of(value.at("x"), {"distance", "visible_volume", "visible_fraction"});
     curve.y = word_of(value.at("y"), {"translation", "rotation"});
@@ -71,6 +71,8 @@ CurveSpec read_curve(const JsonValue& value) {
     curve.low = value.at("low").number();
     curve.high = value.at("high").number();
     if (!(curve.low < curve.high)) throw value.at("high").error("must be larger than low");
+    if (const auto burn_in = value.find("burn_in")) curve.burn_in = burn_in->integer();
+    if (curve.burn_in.value_or(0) < 0) throw value.at("burn_in").error("must not be negative");
     if (const auto logarithmic = value.find("logarithmic")) curve.logarithmic = logarithmic->flag();
     if (curve.logarithmic && !(curve.low > 0.0)) throw value.at("low").error("must be positive for logarithmic bins");
     return curve;

@@ -8,7 +8,8 @@
 //      "with": {"particles": 100, ...},      settings of all rows, see setting.hpp
 //      "rows": [{"label": "...", "scenario": ["baseline", "piston"], "rounds": 3}, ...],
 //      "seeds": 20,                          or {"first": 1, "count": 20}
-//      "curves": [{"x": "distance", "y": "translation", "bins": 20, "low": 100, "high": 600, "logarithmic": false}]
+//      "curves": [{"x": "distance", "y": "translation", "bins": 20, "low": 100, "high": 600, "logarithmic": false,
+//                  "burn_in": 0}]
 //   }]}
 //
 // Every setting may be a list; a row object stands for the product of its lists and those of "with", in the order of
@@ -18,6 +19,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +34,7 @@ struct CurveSpec {
     int bins = 20;
     double low = 0.0, high = 0.0;  // of x
     bool logarithmic = false;
+    std::optional<int> burn_in;  // frames left out at the start; none: as the row's other figures
 };
 
 struct RowSpec {

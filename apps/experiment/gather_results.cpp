@@ -67,11 +67,14 @@ std::vector<CurveSet> curve_sets_of(const TableSpec& table, const fs::path& out)
     for (const CurveSpec& curve : table.curves) sets.push_back(empty_set(curve));
     if (sets.empty()) return sets;
     for (const RowSpec& row : table.rows) {
-        const auto burn_in = static_cast<std::size_t>(summary_options(row.settings).burn_in);
+        const int usual_burn_in = summary_options(row.settings).burn_in;
         std::vector<std::vector<evaluation::CurvePoint>> points(sets.size());
         for (const std::uint64_t seed : table.seeds) {
             const auto frames = read_cell_frames(out, {table.name, row.slug, seed});
-            for (std::size_t c = 0; c < sets.size(); ++c) add_points(table.curves[c], frames, burn_in, points[c]);
+            for (std::size_t c = 0; c < sets.size(); ++c) {
+                const int burn_in = table.curves[c].burn_in.value_or(usual_burn_in);
+                add_points(table.curves[c], frames, static_cast<std::size_t>(burn_in), points[c]);
+            }
         }
         for (std::size_t c = 0; c < sets.size(); ++c) {
             const CurveSpec& spec = table.curves[c];

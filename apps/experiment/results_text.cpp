@@ -1,5 +1,8 @@
 #include "apps/experiment/results_text.hpp"
 
+#include <algorithm>
+#include <set>
+
 #include "apps/data_set/number_text.hpp"
 
 namespace nearpose::experiment {
@@ -42,6 +45,33 @@ std::string markdown_of(const Table& table) {
     return text + "\n";
 }
 
+// The curves' numbers: a line a bin, a column a curve; "median (95 %)".
+std::string markdown_of(const CurveSet& set) {
+    std::set<double> places;
+    for (const evaluation::Curve& curve : set.curves) {
+        for (const evaluation::CurveBin& bin : curve.bins) places.insert(bin.x);
+    }
+    if (places.empty()) return "";
+    std::string text = "| " + in_cell(set.x_title) + " |", line = "|---:|";
+    for (const evaluation::Curve& curve : set.curves) {
+        text += " " + in_cell(curve.label) + " |";
+        line += "---:|";
+    }
+    text += "\n" + line + "\n";
+    for (const double x : places) {
+        text += "| " + data_set::format_fixed(x, 0) + " |";
+        for (const evaluation::Curve& curve : set.curves) {
+            const auto bin =
+                std::find_if(curve.bins.begin(), curve.bins.end(), [&](const auto& b) { return b.x == x; });
+            text += bin == curve.bins.end() ? " - |"
+                                            : " " + data_set::format_fixed(bin->median, 2) + " (" +
+                                                  data_set::format_fixed(bin->percentile_95, 2) + ") |";
+        }
+        text += "\n";
+    }
+    return "The " + set.y_title + ", median (95 %) of the frames:\n\n" + text + "\n";
+}
+
 // Quoted, with quotes doubled, where the text would end the field.
 std::string csv_field(const std::string& text) {
     if (text.find_first_of(",\"\n\r") == text.npos) return text;
@@ -64,6 +94,7 @@ std::string markdown_of(const Results& results, const std::vector<std::string>& 
         text += markdown_of(table);
         for (const CurveSet& set : table.curve_sets) {
             if (!pictures[picture].empty()) text += "![" + set.title + "](" + pictures[picture] + ")\n\n";
+            text += markdown_of(set);
             ++picture;
         }
     }

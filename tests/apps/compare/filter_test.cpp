@@ -1,4 +1,4 @@
-// The generators in the filter: the same frames for all, runs that are kept, tables of what is known.
+// The generators in the filter: the same frames for all, tables of what is known.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -47,12 +47,6 @@ bool go_on() {
     return true;
 }
 
-std::filesystem::path fresh_folder(const std::string& name) {
-    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / ("nearpose_compare_" + name);
-    std::filesystem::remove_all(folder);
-    return folder;
-}
-
 TEST(RunFilters, FindThePoseAndTellItsErrors) {
     const auto runs = run_filters(still_recording(3), two_filters("default"), 1, go_on);
     ASSERT_EQ(runs.size(), 2U);
@@ -76,43 +70,6 @@ TEST(RunFilters, DoNotDisturbEachOther) {
             EXPECT_EQ(alone[0][i].errors->rotation_rad, together[k][i].errors->rotation_rad);
         }
     }
-}
-
-TEST(FilterResults, KeptRunsAreNotRunAgain) {
-    FilterTableOptions options;
-    options.distances_mm = {400.0, 200.0};
-    options.seeds = 2;
-    options.folder = fresh_folder("kept_runs");
-    options.settings = "part of three boxes\n";
-    std::atomic<int> recordings = 0;
-    const auto results = [&] {
-        return filter_results(
-            two_filters(),
-            [&](std::uint64_t) {
-                ++recordings;
-                return still_recording(2);
-            },
-            options, go_on, [] {});
-    };
-    const FilterResults first = results();
-    EXPECT_EQ(recordings, 2);
-    const FilterResults again = results();
-    EXPECT_EQ(recordings, 2);
-    // A run that is missing is run again, and comes out the same but for its time.
-    std::filesystem::remove(options.folder / "paper_raster_8_seed_2.csv");
-    const FilterResults repaired = results();
-    EXPECT_EQ(recordings, 3);
-    for (std::size_t k = 0; k < 2; ++k) {
-        for (std::size_t seed = 0; seed < 2; ++seed) {
-            ASSERT_EQ(first[k][seed].size(), 2U);
-            EXPECT_EQ(evaluation::table_of(first[k][seed]), evaluation::table_of(again[k][seed]));
-            for (std::size_t i = 0; i < 2; ++i) {
-                EXPECT_EQ(first[k][seed][i].errors->translation_m, repaired[k][seed][i].errors->translation_m);
-            }
-        }
-    }
-    options.settings = "another part\n";
-    EXPECT_THROW(results(), std::runtime_error);
 }
 
 TEST(FilterResults, AreEmptyWhereTheUserStopped) {

@@ -89,6 +89,8 @@ TEST(Description, SaysWhatIsWrongAndWhere) {
     refuses(R"([{"distance_mm": 100}])", "", {"tables/0/rows/0/distance_mm", "no setting of such a table"});
     refuses("[{}]", R"("curves": [{"x": "distance", "y": "translation", "low": 3, "high": 2}])",
             {"tables/0/curves/0/high"});
+    refuses("[{}]", R"("curves": [{"x": "distance", "y": "rotation", "low": 1, "high": 2, "burn_in": -1}])",
+            {"tables/0/curves/0/burn_in"});
     refuses("[{}]", R"("curves": [{"x": "time", "y": "translation", "low": 1, "high": 2}])", {"tables/0/curves/0/x"});
 }
 

@@ -1,5 +1,6 @@
 // What bop_toolkit requires of a data set, asked of the files themselves and not of our own readers.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -43,8 +44,8 @@ std::string header_of(const fs::path& ply) {
 class BopRules : public testing::Test {
   protected:
     static void SetUpTestSuite() {
-        folder_ = fs::path(testing::TempDir()) / "bop_rules_test";
-        fs::remove_all(folder_);
+        // Of this process: the suite's tests may run side by side.
+        folder_ = fs::path(testing::TempDir()) / ("bop_rules_test_" + std::to_string(getpid()));
         options_.data_set = folder_ / "set";
         options_.recording.scenario = Scenario::kClutter;
         options_.recording.num_frames = 5;
@@ -55,6 +56,7 @@ class BopRules : public testing::Test {
         const EmbeddedPart part = embedded_part("flange");
         write_data_set(part.mesh, part.part, options_, [] { return true; });
     }
+    static void TearDownTestSuite() { fs::remove_all(folder_); }
     static fs::path set() { return folder_ / "set"; }
     static fs::path scene() { return set() / "test/000001"; }
 

@@ -13,7 +13,8 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path test_file(const std::string& text) {
-    const fs::path folder = fs::path(testing::TempDir()) / "sensor_file_test";
+    const fs::path folder = fs::path(testing::TempDir()) / "sensor_file_test" /
+                            testing::UnitTest::GetInstance()->current_test_info()->name();
     fs::create_directories(folder);
     const fs::path path = folder / "sensor.json";
     data_set::write_file_atomically(path, text);

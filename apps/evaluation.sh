@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# Makes the tables and pictures of apps/EVALUATION.md from nothing: installs what is needed, builds, runs the grid of
+# apps/experiments/evaluation.json (hours; the same command goes on where it was stopped) and puts what came out below the
+# document's mark. What is written above the mark stays.
+# usage: apps/evaluation.sh [FOLDER]   (results; default results/evaluation)
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+out=${1:-results/evaluation}
+document=apps/EVALUATION.md
+mark='<!-- Made by apps/evaluation.sh from here on. -->'
+bash third_party_notes/install_packages.sh build
+cmake --preset release -DNEARPOSE_TESTS=OFF >/dev/null
+cmake --build --preset release --target nearpose
+build/release/apps/nearpose experiment apps/experiments/evaluation.json --out "$out"
+
+grep -qxF "$mark" "$document" || { echo "nearpose: $document has no line  $mark" >&2; exit 1; }
+rm -rf apps/experiments/pictures
+mkdir -p apps/experiments/pictures
+cp "$out"/*.png apps/experiments/pictures/
+{
+    sed "/^$mark\$/q" "$document"
+    echo
+    tail -n +3 "$out/results.md" | sed 's|](\([a-z0-9-]*\.png\))|](experiments/pictures/\1)|'
+} >"$document.new"
+mv "$document.new" "$document"
+echo "the tables and pictures in $document are those of $out"
