@@ -11,12 +11,19 @@ mark='<!-- Made by apps/evaluation.sh from here on. -->'
 bash third_party_notes/install_packages.sh build
 cmake --preset release -DNEARPOSE_TESTS=OFF >/dev/null
 cmake --build --preset release --target nearpose
-build/release/apps/nearpose experiment apps/experiments/evaluation.json --out "$out"
+nearpose=build/release/apps/nearpose
+"$nearpose" experiment apps/experiments/evaluation.json --out "$out"
+
+# What a run looks like: the first, a middle and the last frame of an approach, with the outline of the estimate.
+"$nearpose" simulate --scenario piston --seed 1 --out "$out/piston" --force
+"$nearpose" estimate --scene "$out/piston/test/000001" --models "$out/piston/models" --object 1 --run "$out/piston/run" \
+    --pictures "$out/piston/pictures"
 
 grep -qxF "$mark" "$document" || { echo "nearpose: $document has no line  $mark" >&2; exit 1; }
 rm -rf apps/experiments/pictures
 mkdir -p apps/experiments/pictures
 cp "$out"/*.png apps/experiments/pictures/
+for frame in 000000 000030 000059; do cp "$out/piston/pictures/$frame.png" "apps/experiments/pictures/piston-$frame.png"; done
 {
     sed "/^$mark\$/q" "$document"
     echo
