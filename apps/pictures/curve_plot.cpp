@@ -24,7 +24,7 @@ constexpr Color kPaper{255, 255, 255}, kInk{40, 44, 52}, kGrid{228, 231, 236}, k
 
 // Told apart by colour-blind readers (Okabe and Ito 2008), those that stand out on white first.
 constexpr std::array kColors = {Color{0, 114, 178},  Color{213, 94, 0},  Color{0, 158, 115}, Color{204, 121, 167},
-                                Color{86, 180, 233}, Color{230, 159, 0}, Color{60, 60, 60}};
+                                Color{86, 180, 233}, Color{230, 159, 0}, Color{60, 60, 60},  Color{150, 110, 60}};
 
 Color color_of(std::size_t curve) {
     return kColors[curve % kColors.size()];
@@ -137,25 +137,42 @@ Eigen::Vector2d legend_corner(const Panel& panel, const CurvePlot& plot, double 
                              [&](const auto& a, const auto& b) { return covered(a) < covered(b); });
 }
 
-void draw_legend(Canvas& canvas, const Panel& panel, const CurvePlot& plot) {
-    constexpr double kLine = 21.0, kSample = 30.0;
-    const bool banded = std::any_of(plot.curves.begin(), plot.curves.end(), has_band);
-    const std::string band = plot.is_share_of_share ? "95 % interval" : "middle half of the frames";
-    double widest = banded ? Canvas::text_width(band, kTextSize) : 0.0;
+constexpr double kLegendLine = 21.0, kLegendSample = 30.0;
+
+struct Legend {
+    bool beside = false;  // to the right of the panel: more lines than that would hide curves
+    std::string band;     // what the bands are; empty where there is none
+    double width = 0.0, height = 0.0;
+};
+
+Legend legend_of(const CurvePlot& plot) {
+    constexpr std::size_t kMostInside = 4;
+    Legend legend;
+    legend.beside = plot.curves.size() > kMostInside;
+    if (std::any_of(plot.curves.begin(), plot.curves.end(), has_band))
+        legend.band = plot.is_share_of_share ? "95 % interval" : "middle half of the frames";
+    double widest = Canvas::text_width(legend.band, kTextSize);
     for (const Curve& curve : plot.curves) widest = std::max(widest, Canvas::text_width(curve.label, kTextSize));
-    const double width = kSample + widest + 30.0;
-    const double height = kLine * static_cast<double>(plot.curves.size() + (banded ? 1 : 0)) + 8.0;
-    const Eigen::Vector2d corner = legend_corner(panel, plot, width, height);
-    canvas.fill_rectangle(corner.x(), corner.y(), corner.x() + width, corner.y() + height, kPaper, 0.88);
+    legend.width = kLegendSample + widest + 30.0;
+    legend.height = kLegendLine * static_cast<double>(plot.curves.size() + (legend.band.empty() ? 0 : 1)) + 8.0;
+    return legend;
+}
+
+void draw_legend(Canvas& canvas, const Panel& panel, const CurvePlot& plot) {
+    const Legend legend = legend_of(plot);
+    const Eigen::Vector2d corner = legend.beside ? Eigen::Vector2d(kRight + 8.0, panel.top)
+                                                 : legend_corner(panel, plot, legend.width, legend.height);
+    canvas.fill_rectangle(corner.x(), corner.y(), corner.x() + legend.width, corner.y() + legend.height, kPaper, 0.88);
     Eigen::Vector2d at(corner.x() + 10.0, corner.y() + 15.0);
-    for (std::size_t i = 0; i < plot.curves.size(); ++i, at.y() += kLine) {
-        canvas.polyline({at, {at.x() + kSample, at.y()}}, 2.2, color_of(i));
-        canvas.text({at.x() + kSample + 10.0, at.y() + 0.5 * kTextSize}, plot.curves[i].label, kTextSize, kInk);
+    const auto text_at = [&] { return Eigen::Vector2d(at.x() + kLegendSample + 10.0, at.y() + 0.5 * kTextSize); };
+    for (std::size_t i = 0; i < plot.curves.size(); ++i, at.y() += kLegendLine) {
+        canvas.polyline({at, {at.x() + kLegendSample, at.y()}}, 2.2, color_of(i));
+        canvas.text(text_at(), plot.curves[i].label, kTextSize, kInk);
     }
-    if (!banded) return;
+    if (legend.band.empty()) return;
     const Color color = plot.curves.size() == 1 || plot.is_share_of_share ? color_of(0) : kFrame;
-    canvas.fill_rectangle(at.x(), at.y() - 7.0, at.x() + kSample, at.y() + 7.0, color, 0.25);
-    canvas.text({at.x() + kSample + 10.0, at.y() + 0.5 * kTextSize}, band, kTextSize, kInk);
+    canvas.fill_rectangle(at.x(), at.y() - 7.0, at.x() + kLegendSample, at.y() + 7.0, color, 0.25);
+    canvas.text(text_at(), legend.band, kTextSize, kInk);
 }
 
 void draw_plot(Canvas& canvas, const CurvePlot& plot, double top) {
@@ -178,7 +195,13 @@ void write_curve_plots(const std::filesystem::path& path, const std::vector<Curv
         if (has_bins(plot)) drawn.push_back(plot);
     }
     if (drawn.empty()) throw std::invalid_argument("write_curve_plots: there is no curve with a bin");
-    Canvas canvas(kWidth, static_cast<int>(kPlotHeight * static_cast<double>(drawn.size())) + 10, kPaper);
+    double beside = 0.0;  // what the legends need to the right of the panels
+    for (const CurvePlot& plot : drawn) {
+        const Legend legend = legend_of(plot);
+        if (legend.beside) beside = std::max(beside, legend.width);
+    }
+    Canvas canvas(kWidth + static_cast<int>(beside),
+                  static_cast<int>(kPlotHeight * static_cast<double>(drawn.size())) + 10, kPaper);
     for (std::size_t i = 0; i < drawn.size(); ++i) draw_plot(canvas, drawn[i], kPlotHeight * static_cast<double>(i));
     canvas.save(path);
 }
