@@ -19,13 +19,13 @@ nearpose=build/release/apps/nearpose
 "$nearpose" estimate --scene "$out/piston/test/000001" --models "$out/piston/models" --object 1 --run "$out/piston/run" \
     --pictures "$out/piston/pictures"
 
-grep -qxF "$mark" "$document" || { echo "nearpose: $document has no line  $mark" >&2; exit 1; }
+line=$(grep -nxF -- "$mark" "$document" | cut -d: -f1) || { echo "nearpose: $document has no line  $mark" >&2; exit 1; }
 rm -rf apps/experiments/pictures
 mkdir -p apps/experiments/pictures
 cp "$out"/*.png apps/experiments/pictures/
 for frame in 000000 000030 000059; do cp "$out/piston/pictures/$frame.png" "apps/experiments/pictures/piston-$frame.png"; done
 {
-    sed "/^$mark\$/q" "$document"
+    head -n "$line" "$document"
     echo
     tail -n +3 "$out/results.md" | sed 's|](\([a-z0-9-]*\.png\))|](experiments/pictures/\1)|'
 } >"$document.new"
