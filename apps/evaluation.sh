@@ -15,8 +15,8 @@ nearpose=build/release/apps/nearpose
 "$nearpose" experiment apps/experiments/evaluation.json --out "$out"
 
 # What a run looks like: the first, a middle and the last frame of an approach, with the outline of the estimate.
-"$nearpose" simulate --scenario piston --seed 1 --out "$out/piston" --force
-"$nearpose" estimate --scene "$out/piston/test/000001" --models "$out/piston/models" --object 1 --run "$out/piston/run" \
+"$nearpose" simulate --scenario piston --seed 1 --out "$out/piston/dataset" --force
+"$nearpose" estimate --scene "$out/piston/dataset/test/000001" --models "$out/piston/dataset/models" --object 1 --run "$out/piston/run" \
     --pictures "$out/piston/pictures"
 
 line=$(grep -nxF -- "$mark" "$document" | cut -d: -f1) || { echo "nearpose: $document has no line  $mark" >&2; exit 1; }
