@@ -84,8 +84,10 @@ Correspondences associate_projective(const View& view, const Pose& camera_from_o
         if (pixel < 0 || observation.states()[pixel] != PixelState::kCandidate) continue;
         const float depth_m = observation.depth_m()[pixel];
         if (std::abs(depth_m - point_in_camera.z()) > max_distance_m) continue;
-        append(pairs, view, k, observation.point_at(pixel).cast<float>(),
-               std::hypot(observation.sensor().sigma_m(depth_m), extra_sigma_m));
+        const double normal_z = rotation.row(2).dot(view.normals_in_object[k]);
+        const double sigma_m =
+            observation.sensor().sigma_along_normal_m(observation.sigma_m(depth_m), depth_m, normal_z, camera.fx);
+        append(pairs, view, k, observation.point_at(pixel).cast<float>(), std::hypot(sigma_m, extra_sigma_m));
     }
     return pairs;
 }

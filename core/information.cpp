@@ -1,50 +1,56 @@
 #include "core/information.hpp"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
+#include <string>
 
 namespace nearpose {
 namespace {
 
-Twist jacobian_of(const Correspondences& pairs, std::size_t k) {
-    const Eigen::Vector3d point = pairs.points_in_object[k].cast<double>();
-    const Eigen::Vector3d normal = pairs.normals_in_object[k].cast<double>();
-    Twist jacobian;
-    jacobian << point.cross(normal), normal;
-    return jacobian;
+// "x" where an axis of the object is within 15 degrees, else the direction's numbers.
+std::string axis_name(Eigen::Vector3d direction) {
+    constexpr double kCosine = 0.966;
+    direction.normalize();
+    Eigen::Index largest = 0;
+    direction.cwiseAbs().maxCoeff(&largest);
+    if (std::abs(direction[largest]) > kCosine) return std::string(1, "xyz"[largest]);
+    if (direction[largest] < 0.0) direction = -direction;
+    std::string text = "(";
+    for (int i = 0; i < 3; ++i) {  // std::to_chars knows no locale's comma
+        std::array<char, 32> digits{};
+        const auto end =
+            std::to_chars(digits.data(), digits.data() + digits.size(), direction[i], std::chars_format::fixed, 2);
+        text.append(digits.data(), end.ptr);
+        text += i < 2 ? " " : ")";
+    }
+    return text;
+}
+
+// What part of the motion is a turn decides its name; where both are large it is a turn about an axis far away.
+std::string name_of(const Twist& direction) {
+    const double turn = direction.head<3>().norm(), slide = direction.tail<3>().norm();
+    if (slide > 2.0 * turn) return "slides along " + axis_name(direction.tail<3>());
+    if (turn > 2.0 * slide) return "turns about " + axis_name(direction.head<3>());
+    return "turns about " + axis_name(direction.head<3>()) + " while it slides along " + axis_name(direction.tail<3>());
 }
 
 }  // namespace
 
-Matrix6d information_of(const Correspondences& pairs) {
-    Matrix6d information = Matrix6d::Zero();
-    for (std::size_t k = 0; k < pairs.size(); ++k) {
-        const Twist jacobian = jacobian_of(pairs, k);
-        const double sigma_m = pairs.sigmas_m[k];
-        information.noalias() += jacobian * jacobian.transpose() / (sigma_m * sigma_m);
+Observability observability_of(const Matrix6d& covariance, double radius_m, double weak_beyond_m) {
+    Twist scale;
+    scale << Eigen::Vector3d::Constant(radius_m), Eigen::Vector3d::Ones();
+    const Matrix6d scaled = scale.asDiagonal() * covariance * scale.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(0.5 * (scaled + scaled.transpose()));
+    Observability result;
+    for (int k = 0; k < 6; ++k) {  // the solver's are in ascending order
+        result.directions.col(k) = solver.eigenvectors().col(5 - k);
+        result.sigmas_m[k] = std::sqrt(std::max(0.0, solver.eigenvalues()[5 - k]));
+        if (result.sigmas_m[k] > weak_beyond_m) result.weak.push_back(name_of(result.directions.col(k)));
     }
-    return information;
-}
-
-Matrix6d covariance_of(const Correspondences& pairs, const CovarianceOptions& options) {
-    // The estimate averages the pairs with weights 1/sigma^2, so its error from a shared error s per patch of k rays is
-    // A^-1 B A^-1 with A the information and B = k s^2 sum J^T J / sigma^4.
-    Matrix6d A = information_of(pairs);
-    Matrix6d B = A;
-    const double shared = options.rays_per_shared_error * options.systematic_sigma_m * options.systematic_sigma_m;
-    for (std::size_t k = 0; k < pairs.size(); ++k) {
-        const Twist jacobian = jacobian_of(pairs, k);
-        B.noalias() +=
-            shared * std::pow(static_cast<double>(pairs.sigmas_m[k]), -4.0) * jacobian * jacobian.transpose();
-    }
-    Twist prior;
-    prior << Eigen::Vector3d::Constant(std::pow(options.prior_rotation_rad, -2.0)),
-        Eigen::Vector3d::Constant(std::pow(options.prior_translation_m, -2.0));
-    A += prior.asDiagonal();
-    B += prior.asDiagonal();
-    const Matrix6d inverse = A.ldlt().solve(Matrix6d::Identity());
-    const Matrix6d covariance = inverse * B * inverse;
-    return 0.5 * (covariance + covariance.transpose());
+    return result;
 }
 
 }  // namespace nearpose

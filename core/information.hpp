@@ -1,26 +1,24 @@
-// What an observation says about a pose, and how surely.
+// What an observation determines of a pose, and what it leaves open.
 #pragma once
 
-#include "core/correspondence.hpp"
+#include <string>
+#include <vector>
+
 #include "core/pose.hpp"
 
 namespace nearpose {
 
-// Information (inverse covariance) that point-to-plane pairs with independent noise hold about the twist of
-// pose * exp(twist): sum of J^T J / sigma^2, J = [(p x n)^T, n^T] with the pair's point and normal in object axes. The
-// order is rotation first; units 1/rad^2, 1/(rad m), 1/m^2.
-Matrix6d information_of(const Correspondences& pairs);
-
-struct CovarianceOptions {
-    double rays_per_shared_error = 1.0;  // so many neighbouring rays share one systematic error
-    double systematic_sigma_m = 0.0;     // its standard deviation [m]
-    double prior_rotation_rad = 1.0;     // standard deviations of a weak prior: what stays where the pairs say nothing
-    double prior_translation_m = 0.1;
+// The spectrum of what one observation says about the pose, in a measure in which a turn counts with the way of a point
+// at the object's radius: directions and standard deviations [m], the least determined first.
+struct Observability {
+    Eigen::Matrix<double, 6, 6> directions = Matrix6d::Identity();  // columns: (radius * rotation, translation), unit
+    Twist sigmas_m = Twist::Zero();
+    // Directions that the observation leaves open by more than the limit, in words and object axes: "slides along x",
+    // "turns about z".
+    std::vector<std::string> weak;
 };
 
-// Covariance of the twist of pose * exp(twist). On top of the independent noise the sensor has errors that neighbouring
-// rays share: they are not averaged away within a patch of `rays_per_shared_error` rays, so they count with the
-// information of one ray a patch.
-Matrix6d covariance_of(const Correspondences& pairs, const CovarianceOptions& options);
+// `covariance` is of one observation's own fit, about the model's centre (see fine_fit.hpp).
+Observability observability_of(const Matrix6d& covariance, double radius_m, double weak_beyond_m);
 
 }  // namespace nearpose

@@ -105,6 +105,32 @@ void Observation::index_cloud() {
     index_ = PointIndex(points_in_camera_);
 }
 
+// A plane's inverse depth is linear over the image, so that its second difference is noise alone: of variance 6 / z^4
+// sigma^2. The median over the image is not moved by edges and curved places.
+void Observation::measure_noise() {
+    constexpr int kReach = 3;  // pixels: neighbours share noise
+    constexpr std::size_t kMinSamples = 100;
+    constexpr double kMedianOfNormal = 0.6745, kLeast = 0.5, kMost = 10.0;
+    std::vector<double> ratios;
+    const int stride = std::max(1, static_cast<int>(std::sqrt(num_candidates_ / 3000.0)));
+    for (int v = candidate_box_.first_v; v < candidate_box_.last_v; v += stride) {
+        for (int u = candidate_box_.first_u + kReach; u < candidate_box_.last_u - kReach; u += stride) {
+            const int pixel = v * camera_.width + u;
+            bool usable = true;
+            for (const int other : {pixel - kReach, pixel, pixel + kReach})
+                usable = usable && states_[other] == PixelState::kCandidate;
+            if (!usable) continue;
+            const double z_m = depth_m_[pixel];
+            const double second = 1.0 / depth_m_[pixel - kReach] - 2.0 / z_m + 1.0 / depth_m_[pixel + kReach];
+            ratios.push_back(std::abs(second) * z_m * z_m / (std::sqrt(6.0) * sensor_.sigma_m(z_m)));
+        }
+    }
+    if (ratios.size() < kMinSamples) return;
+    const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+    std::nth_element(ratios.begin(), middle, ratios.end());
+    noise_factor_ = std::clamp(*middle / kMedianOfNormal, kLeast, kMost);
+}
+
 ObservedGrid observe(const Observation& observation, const PixelGrid& grid) {
     ObservedGrid observed;
     observed.grid = grid;
@@ -118,7 +144,7 @@ ObservedGrid observe(const Observation& observation, const PixelGrid& grid) {
         const float depth_m = observation.depth_m()[pixel];
         observed.states.push_back(observation.states()[pixel]);
         observed.depth_m.push_back(depth_m);
-        observed.sigma_m.push_back(static_cast<float>(observation.sensor().sigma_m(depth_m)));
+        observed.sigma_m.push_back(static_cast<float>(observation.sigma_m(depth_m)));
         observed.num_candidates += observation.states()[pixel] == PixelState::kCandidate;
     }
     return observed;
@@ -146,6 +172,7 @@ Observation make_observation(const DepthImage& depth, const PinholeCamera& camer
     observation.find_candidates();
     observation.sample_cloud(options.max_points);
     observation.index_cloud();
+    observation.measure_noise();
     return observation;
 }
 

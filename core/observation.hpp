@@ -42,6 +42,12 @@ class Observation {
     const PixelBox& candidate_box() const { return candidate_box_; }
     int num_candidates() const { return num_candidates_; }
 
+    // How many times the sensor model's noise this image shows on smooth surfaces: the model is of a sensor, and rain,
+    // light and dark surfaces are of the day. 1 where too little is seen to tell.
+    double noise_factor() const { return noise_factor_; }
+    // Standard deviation of a pixel's depth in this image [m].
+    double sigma_m(double depth_m) const { return noise_factor_ * sensor_.sigma_m(depth_m); }
+
     // An even subset of the candidates as a cloud, with unit normals towards the camera (zero where the neighbourhood
     // gives none), and the index over it.
     const std::vector<Eigen::Vector3f>& points_in_camera() const { return points_in_camera_; }
@@ -69,6 +75,7 @@ class Observation {
     void find_candidates();
     void sample_cloud(int max_points);
     void index_cloud();
+    void measure_noise();
 
     PinholeCamera camera_;
     SensorModel sensor_;
@@ -77,6 +84,7 @@ class Observation {
     std::vector<PixelState> states_;
     PixelBox candidate_box_;
     int num_candidates_ = 0;
+    double noise_factor_ = 1.0;
     std::vector<Eigen::Vector3f> points_in_camera_;
     std::vector<Eigen::Vector3f> normals_in_camera_;
     Eigen::Vector3d centroid_in_camera_ = Eigen::Vector3d::Zero();
@@ -92,7 +100,10 @@ struct ObservedGrid {
     int num_candidates = 0;
     std::vector<PixelState> states;  // row-major over the grid
     std::vector<float> depth_m;      // 0 where kNoDepth
-    std::vector<float> sigma_m;      // of the sensor at that depth
+    std::vector<float> sigma_m;      // of this image at that depth
+    std::vector<float> weights;      // what agreement there says, in 0..1 (see start_pairs.hpp); empty: 1 everywhere
+
+    double weight(int index) const { return weights.empty() ? 1.0 : static_cast<double>(weights[index]); }
 };
 
 ObservedGrid observe(const Observation& observation, const PixelGrid& grid);

@@ -15,6 +15,13 @@ const PinholeCamera kCamera = test::small_camera();
 const Pose kTruth{Eigen::Quaterniond(Eigen::AngleAxisd(2.6, Eigen::Vector3d(1, 0.3, 0.1).normalized())),
                   {0.01, 0, 0.45}};
 
+// Of the distance between the measured point and the pair's plane.
+double sigma_of_pair(const Observation& observation, const Correspondences& pairs, std::size_t k) {
+    const double depth_m = pairs.points_in_camera[k].z();
+    const double normal_z = (kTruth.rotation * pairs.normals_in_object[k].cast<double>()).z();
+    return observation.sensor().sigma_along_normal_m(observation.sigma_m(depth_m), depth_m, normal_z, kCamera.fx);
+}
+
 Observation observe_part() {
     Mask mask;
     const DepthImage image = test::render(kPart, kTruth, kCamera, 0.8F, &mask);
@@ -29,7 +36,7 @@ TEST(Correspondence, ProjectiveAtTheTruthPairsEveryPointWithItself) {
     for (std::size_t k = 0; k < pairs.size(); ++k) {
         const Eigen::Vector3d model = kTruth * pairs.points_in_object[k].cast<double>();
         EXPECT_LT((model - pairs.points_in_camera[k].cast<double>()).norm(), 1e-6);
-        EXPECT_FLOAT_EQ(pairs.sigmas_m[k], static_cast<float>(observation.sensor().sigma_m(model.z())));
+        EXPECT_NEAR(pairs.sigmas_m[k], sigma_of_pair(observation, pairs, k), 1e-8);
     }
 }
 
@@ -59,8 +66,7 @@ TEST(Correspondence, ExtraSigmaAddsInQuadrature) {
     const Observation observation = observe_part();
     const View view = kPart.generate(kTruth, kCamera);
     const Correspondences pairs = associate_projective(view, kTruth, observation, 0.01, 0.004);
-    const double sensor_m = observation.sensor().sigma_m(pairs.points_in_camera[0].z());
-    EXPECT_NEAR(pairs.sigmas_m[0], std::hypot(sensor_m, 0.004), 1e-7);
+    EXPECT_NEAR(pairs.sigmas_m[0], std::hypot(sigma_of_pair(observation, pairs, 0), 0.004), 1e-7);
 }
 
 TEST(Correspondence, NormalCheckDropsTheWrongSideOnly) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/random.hpp"
+
 #include <cmath>
 #include <limits>
 
@@ -134,6 +136,22 @@ TEST(Observation, GridHoldsTheImagesOwnValues) {
         EXPECT_EQ(observed.states[index], observation.states()[pixel]);
     }
     EXPECT_EQ(observed.num_candidates, observed.grid.size());
+}
+
+TEST(Observation, MeasuresHowNoisyTheImageIs) {
+    // A tilted plane with white noise of a known multiple of the sensor model's.
+    const PinholeCamera camera{160, 120, 150.0, 150.0, 79.5, 59.5};
+    const SensorModel sensor;
+    for (const double factor : {1.0, 2.0, 4.0}) {
+        RandomStream random(5, 0, 0, RandomPurpose::kDiffusion);
+        DepthImage image{160, 120, {}};
+        for (int pixel = 0; pixel < 160 * 120; ++pixel) {
+            const Eigen::Vector3d ray = camera.ray(pixel % 160, pixel / 160);
+            const double depth_m = 0.5 / (1.0 + 0.4 * ray.x() - 0.2 * ray.y());
+            image.depth_m.push_back(static_cast<float>(depth_m + factor * sensor.sigma_m(depth_m) * random.gaussian()));
+        }
+        EXPECT_NEAR(make_observation(image, camera, {}).noise_factor() / factor, 1.0, 0.06) << factor;
+    }
 }
 
 }  // namespace
