@@ -31,21 +31,29 @@ ParticleSet start_around(const Pose& camera_from_object, const Diffusion& spread
     return particles;
 }
 
-std::vector<SurfaceAnchor> find_anchors(const ViewGenerator& views, int count) {
-    // Directions of a Fibonacci sphere, from far enough for the whole model to be in view.
-    constexpr int kDirections = 32;
-    constexpr int kSide = 64;
+std::vector<Eigen::Vector3d> directions_all_around(int count) {
+    std::vector<Eigen::Vector3d> directions;  // a Fibonacci sphere
+    for (int k = 0; k < count; ++k) {
+        const double z = 1.0 - (2.0 * k + 1.0) / count, angle = k * M_PI * (3.0 - std::sqrt(5.0));
+        const double radius = std::sqrt(1.0 - z * z);
+        directions.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
+    }
+    return directions;
+}
+
+View view_from(const ViewGenerator& views, const Eigen::Vector3d& direction_in_object, int side) {
     const ModelExtent& extent = views.extent();
     const double distance_m = 2.0 * extent.diameter_m();
-    const PinholeCamera camera{kSide, kSide, 1.5 * kSide, 1.5 * kSide, 0.5 * (kSide - 1), 0.5 * (kSide - 1)};
+    const PinholeCamera camera{side, side, 1.5 * side, 1.5 * side, 0.5 * (side - 1), 0.5 * (side - 1)};
+    const auto rotation = Eigen::Quaterniond::FromTwoVectors(direction_in_object, -Eigen::Vector3d::UnitZ());
+    return views.generate({rotation, Eigen::Vector3d(0, 0, distance_m) - rotation * extent.centre_in_object()}, camera);
+}
+
+std::vector<SurfaceAnchor> find_anchors(const ViewGenerator& views, int count) {
+    constexpr int kDirections = 32, kSide = 64;
     std::vector<SurfaceAnchor> all;
-    for (int k = 0; k < kDirections; ++k) {
-        const double z = 1.0 - (2.0 * k + 1.0) / kDirections, angle = k * M_PI * (3.0 - std::sqrt(5.0));
-        const double radius = std::sqrt(1.0 - z * z);
-        const Eigen::Vector3d direction(radius * std::cos(angle), radius * std::sin(angle), z);
-        const auto rotation = Eigen::Quaterniond::FromTwoVectors(direction, -Eigen::Vector3d::UnitZ());
-        const Pose pose{rotation, Eigen::Vector3d(0, 0, distance_m) - rotation * extent.centre_in_object()};
-        const View view = views.generate(pose, camera);
+    for (const Eigen::Vector3d& direction : directions_all_around(kDirections)) {
+        const View view = view_from(views, direction, kSide);
         for (std::size_t p = 0; p < view.size(); ++p)
             all.push_back({view.points_in_object[p], view.normals_in_object[p]});
     }
@@ -53,6 +61,14 @@ std::vector<SurfaceAnchor> find_anchors(const ViewGenerator& views, int count) {
     const std::size_t every = std::max<std::size_t>(1, all.size() / std::max(1, count));
     for (std::size_t p = 0; p < all.size(); p += every) anchors.push_back(all[p]);
     return anchors;
+}
+
+Pose laid_on(const SurfaceAnchor& anchor, const SurfaceAnchor& measured, double turn_rad) {
+    const Eigen::Vector3d normal = measured.normal_in_object.cast<double>();
+    const Eigen::Quaterniond turn(Eigen::AngleAxisd(turn_rad, normal));
+    const auto align = Eigen::Quaterniond::FromTwoVectors(anchor.normal_in_object.cast<double>(), normal);
+    const Eigen::Quaterniond rotation = (turn * align).normalized();
+    return {rotation, measured.point_in_object.cast<double>() - rotation * anchor.point_in_object.cast<double>()};
 }
 
 ParticleSet start_on_surface(const Observation& observation, const std::vector<SurfaceAnchor>& anchors, int count,
@@ -66,12 +82,9 @@ ParticleSet start_on_surface(const Observation& observation, const std::vector<S
         RandomStream random(seed, step, first_stream + static_cast<std::uint64_t>(i), RandomPurpose::kStart);
         const int measured = oriented[random.below(static_cast<int>(oriented.size()))];
         const SurfaceAnchor& anchor = anchors[random.below(static_cast<int>(anchors.size()))];
-        const Eigen::Vector3d normal = observation.normals_in_camera()[measured].cast<double>();
-        const Eigen::Quaterniond turn(Eigen::AngleAxisd(random.uniform(0.0, 2.0 * M_PI), normal));
-        const auto align = Eigen::Quaterniond::FromTwoVectors(anchor.normal_in_object.cast<double>(), normal);
-        const Eigen::Quaterniond rotation = (turn * align).normalized();
-        const Eigen::Vector3d point = observation.points_in_camera()[measured].cast<double>();
-        particles.poses.push_back({rotation, point - rotation * anchor.point_in_object.cast<double>()});
+        particles.poses.push_back(
+            laid_on(anchor, {observation.points_in_camera()[measured], observation.normals_in_camera()[measured]},
+                    random.uniform(0.0, 2.0 * M_PI)));
     }
     particles.weights.assign(particles.poses.size(), 0.0);
     return particles;

@@ -26,8 +26,18 @@ struct SurfaceAnchor {
     Eigen::Vector3f normal_in_object;
 };
 
+// Unit vectors, spread evenly.
+std::vector<Eigen::Vector3d> directions_all_around(int count);
+
+// The model as seen from two diameters away, whole, on side x side pixels.
+View view_from(const ViewGenerator& views, const Eigen::Vector3d& direction_in_object, int side);
+
 // Anchors from views of the model from all around, about `count` of them.
 std::vector<SurfaceAnchor> find_anchors(const ViewGenerator& views, int count);
+
+// camera_from_object that lays an anchor on a measured point (in camera coordinates), normal on normal, turned about
+// it.
+Pose laid_on(const SurfaceAnchor& anchor, const SurfaceAnchor& measured, double turn_rad);
 
 // The start for a partial view: a random anchor of the model is laid on a random measured point, normal on normal,
 // with a random turn about it. Needs no object centre, which a close camera does not see. Particle i draws from the
