@@ -7,12 +7,17 @@
 #include <vector>
 
 #include "core/gradient_step.hpp"
+#include "core/information.hpp"
 #include "core/method.hpp"
 #include "core/modes.hpp"
 #include "core/observation.hpp"
 #include "core/particles.hpp"
 #include "core/pose_solver.hpp"
 #include "core/start.hpp"
+#include "core/start_pairs.hpp"
+#include "core/symmetry.hpp"
+#include "core/track.hpp"
+#include "core/verdict.hpp"
 #include "core/view_generator.hpp"
 
 namespace nearpose {
@@ -23,6 +28,8 @@ struct EstimatorOptions {
     int num_threads = 0;  // 0: as many as the machine has
     std::uint64_t seed = 1;
     int min_candidates = 50;  // pixels; fewer show nothing of the object
+    Symmetries symmetries;    // of the part
+    Tolerance tolerance;      // of the verdict
 };
 
 // Throws std::invalid_argument naming field, value and bound.
@@ -47,7 +54,11 @@ struct UpdateResult {
     Matrix6d covariance = Matrix6d::Zero();  // of the twist of camera_from_object * exp(twist), rotation first
     double cost = 0.0;                       // of the MAP: the pixel cost in 0..1, or epsilon [m^2]
     double score = 0.0;                      // larger is better: 1 - pixel cost, or 1 / (1 + epsilon / sigma^2)
+    Verdict verdict = Verdict::kContinue;    // may the pose be acted on?
     std::vector<Mode> modes;                 // refined, best first; the default method's
+    Observability observability;             // of this frame alone; the tracked pose may be known better
+    PixelCost pixels;                        // how the estimate's rays compare with the depth image
+    double agreement = 0.0;                  // share of the rays that tell anything which agree with the depth, in 0..1
     double effective_sample_size = 0.0;      // 1..number of particles, after weighting
     bool resampled = false;                  // before this update's propagation
     bool mode_replaced = false;              // another mode explains the observation better than the tracked one
@@ -85,6 +96,11 @@ class PoseEstimator {
     // Both choose the estimate; false: no pose shows the object in this observation.
     bool take_map(const Observation& observation, UpdateResult& result);
     bool take_refined_mode(const Observation& observation, UpdateResult& result);
+    bool search_again() const;
+    std::vector<Mode> near_modes(const std::vector<Mode>& modes) const;
+    void bring_to_one_representative(std::vector<Mode>& modes) const;
+    bool rivals_due() const;
+    void weigh_rivals(UpdateResult& result, bool tried);
     std::vector<Mode> modes_to_refine(const Observation& observation, UpdateResult& result) const;
     std::vector<Mode> best_rivals(const std::vector<Mode>& leaders, const Observation& observation,
                                   UpdateResult& result) const;
@@ -94,19 +110,32 @@ class PoseEstimator {
                                  UpdateResult& result) const;
     StepContext context_for(const Observation& observation, const ObservedGrid& observed,
                             const GradientStep& step) const;
+    ObservedGrid observe_on(const PixelGrid& grid, const Observation& observation) const;
     PixelGrid grid_for(const Observation& observation, int max_rays) const;
+    PixelGrid grid_around(const Pose& camera_from_object, const Observation& observation, int max_rays) const;
+    PixelBox box_around(const Pose& camera_from_object, const Observation& observation) const;
+    void weigh_against_image(int stride, const Observation& observation, MovedParticle& moved) const;
     ModeDistance mode_distance() const;
-    void describe_estimate(const Observation& observation, UpdateResult& result) const;
+    void correct_tracked(const Mode& chosen, bool replaced, const Observation& observation);
+    void describe_estimate(const Observation& observation, UpdateResult& result);
 
     std::shared_ptr<const ViewGenerator> views_;
     std::shared_ptr<const PoseSolver> solver_;
     EstimatorOptions options_;
     std::vector<SurfaceAnchor> anchors_;
+    std::optional<AnchorPairs> pairs_;
+    std::optional<PatchGrid> patches_;  // while searching
     ParticleSet particles_;
-    std::optional<Mode> tracked_;     // the estimate of the last update
-    std::vector<double> last_costs_;  // of the particles
-    std::uint64_t step_ = 0;          // updates so far; addresses the random streams
-    int frames_held_ = 0;             // updates since the tracked mode was last replaced
+    std::optional<Mode> tracked_;           // the estimate of the last update
+    std::optional<Track> track_;            // the same with its spread and the sensor's errors; the default method's
+    std::vector<double> last_costs_;        // of the particles
+    std::uint64_t step_ = 0;                // updates so far; addresses the random streams
+    Matrix6d observed_ = Matrix6d::Zero();  // covariance of the last observation's own fit, about the centre
+    double rival_weight_ = 0.0;             // when rivals were last tried
+    bool searching_ = false;                // in this update the object may be anywhere
+    bool rivals_tried_ = false;             // since the tracked mode was last replaced
+    int frames_lost_ = 0;                   // updates in a row whose estimate does not convince
+    int frames_held_ = 0;                   // updates since the tracked mode was last replaced
 };
 
 }  // namespace nearpose

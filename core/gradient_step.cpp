@@ -69,6 +69,7 @@ void weigh_by_pixels(const StepContext& context, const PixelCostOptions& options
     const PixelCost cost = pixel_cost(view, moved.camera_from_object, context.observed, options);
     moved.cost = cost.cost;
     moved.support = cost.support();
+    moved.gain = cost.gain;
     moved.negative_log_likelihood = negative_log_likelihood(cost, options);
 }
 
@@ -129,7 +130,7 @@ MovedParticle refine_mode(const Pose& camera_from_object, const StepContext& con
     step.association = Association::kProjective;
     step.extra_sigma_diameters = refinement.first_extra_sigma_diameters;
     const double diameter_m = context.views.extent().diameter_m();
-    const double sensor_m = context.observation.sensor().sigma_m(context.observation.mean_distance_m());
+    const double sensor_m = context.observation.sigma_m(context.observation.mean_distance_m());
     const RandomStream unused(0, 0, 0, RandomPurpose::kSampleConsensus);
     for (int round = 0; round < refinement.rounds; ++round) {
         // A pair farther off than a few of its sigmas is not the same surface.
@@ -140,17 +141,20 @@ MovedParticle refine_mode(const Pose& camera_from_object, const StepContext& con
         solve(find_pairs(cast(moved.camera_from_object, context, moved), sharper, unused, moved), sharper, moved);
         step.extra_sigma_diameters *= 0.5;
     }
-    PixelCostOptions cost = context.pixel_cost;
-    cost.extra_sigma_m = refinement.cost_sigma_diameters * diameter_m;
-    weigh_by_pixels(context, cost, moved);
+    const PixelCost cost = refined_cost(moved.camera_from_object, context, refinement);
+    moved.cost = cost.cost;
+    moved.support = cost.support();
+    moved.log_evidence = log_evidence(cost, context.pixel_cost, refinement.rays_per_evidence);
     return moved;
 }
 
-Correspondences pairs_at(const Pose& camera_from_object, const StepContext& context) {
-    constexpr double kGateSigmas = 5.0;
-    const double sensor_m = context.observation.sensor().sigma_m(context.observation.mean_distance_m());
+PixelCost refined_cost(const Pose& camera_from_object, const StepContext& context, const Refinement& refinement) {
+    PixelCostOptions options = context.pixel_cost;
+    options.extra_sigma_m = refinement.cost_sigma_diameters * context.views.extent().diameter_m();
+    options.outline_sigma_m = options.extra_sigma_m;
+    options.with_outline = refinement.outline;
     const View view = context.views.generate(camera_from_object, context.observed.camera);
-    return associate_projective(view, camera_from_object, context.observation, kGateSigmas * sensor_m, 0.0);
+    return pixel_cost(view, camera_from_object, context.observed, options);
 }
 
 }  // namespace nearpose

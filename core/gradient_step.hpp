@@ -34,8 +34,11 @@ struct StepCounts {
 struct MovedParticle {
     Pose camera_from_object;
     double negative_log_likelihood = 0.0;
-    double cost = 0.0;     // the pixel cost, or epsilon [m^2]
-    double support = 0.0;  // with the pixel cost: share of the model's rays that agree
+    double cost = 0.0;          // the pixel cost, or epsilon [m^2]
+    double support = 0.0;       // with the pixel cost: share of the model's rays that agree
+    double log_evidence = 0.0;  // of a refined mode
+    double gain =
+        0.0;  // grid pixels by which the pose explains the image better than no object, where nothing is segmented
     StepCounts counts;
     StageSeconds seconds;
 };
@@ -61,7 +64,7 @@ MovedParticle move_particle(const Pose& camera_from_object, const StepContext& c
 // the extra noise halves from round to round.
 MovedParticle refine_mode(const Pose& camera_from_object, const StepContext& context, const Refinement& refinement);
 
-// The pairs of the final pose without extra noise, for its covariance.
-Correspondences pairs_at(const Pose& camera_from_object, const StepContext& context);
+// The pixels' verdicts on a refined pose.
+PixelCost refined_cost(const Pose& camera_from_object, const StepContext& context, const Refinement& refinement);
 
 }  // namespace nearpose

@@ -1,6 +1,7 @@
 #include "core/likelihood.hpp"
 
 #include <cmath>
+#include <utility>
 
 namespace nearpose {
 
@@ -25,21 +26,70 @@ double negative_log_likelihood(double overlap_scaled_mse_m2, double sensor_sigma
 namespace {
 
 // The cost of one ray that meets the model, and its count.
-double cost_of_hit(double residual_m, double sigma_m, PixelState state, bool segmented, const PixelCostOptions& options,
-                   PixelCost& counts) {
+double cost_of_hit(double residual_m, double sigma_m, PixelState state, bool segmented, double weight,
+                   const PixelCostOptions& options, PixelCost& counts) {
     const double r = residual_m / (options.truncation_sigmas * sigma_m);  // positive: the model is in front
     if (r > 1.0) {
         ++counts.model_in_front;
+        ++counts.contradicted;
         return 1.0;
     }
     if (r < -1.0) {
         ++counts.model_behind;
-        if (segmented && state == PixelState::kCandidate) return 1.0;
-        return segmented ? options.occluded_cost : options.unexplained_cost;
+        if (segmented && state == PixelState::kCandidate) {
+            ++counts.contradicted;
+            return 1.0;
+        }
+        return segmented ? options.occluded_cost : weight * options.unexplained_cost;
     }
-    if (state == PixelState::kBackground) return options.occluded_cost;
+    if (state == PixelState::kBackground) {
+        ++counts.off_mask;
+        return options.occluded_cost;
+    }
     ++counts.agreeing;
-    return r * r;
+    return weight * r * r;
+}
+
+// One hit in camera coordinates.
+struct Hit {
+    Eigen::Vector3f point;
+    Eigen::Vector3f normal;
+    int index = 0;  // of the grid
+};
+
+enum class Outline { kInside, kEnds, kGoesOn };
+
+// Whether the model ends at this ray, and if so, whether the measured surface goes on in the model's tangent plane.
+Outline outline_at(const Hit& hit, const ObservedGrid& observed, const std::vector<char>& covered, double sigma_m) {
+    constexpr int kBeyond = 2;  // grid steps: the one beside the outline may be a mixed pixel
+    const int width = observed.grid.width, height = observed.grid.height;
+    const int u = hit.index % width, v = hit.index / width;
+    const float distance_m = hit.normal.dot(hit.point);
+    Outline outline = Outline::kInside;
+    for (const auto& [du, dv] : {std::pair{1, 0}, std::pair{-1, 0}, std::pair{0, 1}, std::pair{0, -1}}) {
+        const int far_u = u + kBeyond * du, far_v = v + kBeyond * dv;
+        if (far_u < 0 || far_v < 0 || far_u >= width || far_v >= height) continue;
+        const int beside = (v + dv) * width + u + du, beyond = far_v * width + far_u;
+        if (covered[beside] || covered[beyond] || observed.states[beyond] == PixelState::kNoDepth) continue;
+        const Eigen::Vector3f ray = observed.camera.ray(far_u, far_v).cast<float>();
+        const float off_m = hit.normal.dot(ray) * observed.depth_m[beyond] - distance_m;  // along the normal
+        if (std::abs(off_m) < 3.0 * std::hypot(sigma_m, observed.sigma_m[beyond])) return Outline::kGoesOn;
+        outline = Outline::kEnds;
+    }
+    return outline;
+}
+
+double total_weight(const ObservedGrid& observed) {
+    double sum = 0.0;
+    for (int index = 0; index < observed.grid.size(); ++index)
+        if (observed.states[index] == PixelState::kCandidate) sum += observed.weight(index);
+    return sum;
+}
+
+std::vector<char> covered_by(const View& view, int grid_size) {
+    std::vector<char> covered(static_cast<std::size_t>(grid_size), 0);
+    for (const int pixel : view.pixels) covered[pixel] = 1;
+    return covered;
 }
 
 }  // namespace
@@ -49,28 +99,49 @@ PixelCost pixel_cost(const View& view, const Pose& camera_from_object, const Obs
     const Eigen::Matrix3f rotation = camera_from_object.rotation_matrix().cast<float>();
     const Eigen::Vector3f translation = camera_from_object.translation.cast<float>();
     const double extra_variance_m2 = options.extra_sigma_m * options.extra_sigma_m;
+    const std::vector<char> covered =
+        options.with_outline ? covered_by(view, observed.grid.size()) : std::vector<char>{};
     PixelCost result;
-    double sum = 0.0;
+    result.segmented = observed.segmented;
+    double sum = 0.0, covered_weight = 0.0;
     int candidates_covered = 0;
     for (std::size_t k = 0; k < view.size(); ++k) {
         const int index = view.pixels[k];
         const PixelState state = observed.states[index];
         if (state == PixelState::kNoDepth) continue;
-        const Eigen::Vector3f point = rotation * view.points_in_object[k] + translation;
-        const Eigen::Vector3f normal = rotation * view.normals_in_object[k];
-        const double cosine = std::abs(normal.dot(point)) / point.norm();
+        const Hit hit{rotation * view.points_in_object[k] + translation, rotation * view.normals_in_object[k], index};
+        const double cosine = std::abs(hit.normal.dot(hit.point)) / hit.point.norm();
         const double sensor_m = observed.sigma_m[index];
         const double sigma_m = std::sqrt(sensor_m * sensor_m + extra_variance_m2);
-        const double residual_m = (observed.depth_m[index] - point.z()) * cosine;
-        sum += cost_of_hit(residual_m, sigma_m, state, observed.segmented, options, result);
+        const double residual_m = (observed.depth_m[index] - hit.point.z()) * cosine;
         candidates_covered += state == PixelState::kCandidate;
         ++result.model_rays;
+        const int agreeing_before = result.agreeing;
+        const double weight = observed.weight(index);
+        covered_weight += weight;
+        const double cost = cost_of_hit(residual_m, sigma_m, state, observed.segmented, weight, options, result);
+        sum += cost;
+        if (!options.with_outline || result.agreeing == agreeing_before) continue;
+        const Outline outline = outline_at(hit, observed, covered, options.outline_sigma_m);
+        result.outline += outline != Outline::kInside;
+        if (outline != Outline::kGoesOn) continue;
+        ++result.flush;
+        if (observed.segmented) continue;
+        --result.agreeing;
+        sum += options.outline_cost - cost;
     }
     result.missing_model = observed.num_candidates - candidates_covered;
-    sum += result.missing_model * (observed.segmented ? 1.0 : options.unexplained_cost);
+    result.gain = options.unexplained_cost * covered_weight - sum;
+    double missing = result.missing_model;
+    if (!observed.weights.empty()) missing = total_weight(observed) - covered_weight;
+    sum += missing * (observed.segmented ? 1.0 : options.unexplained_cost);
     result.judged = result.model_rays + result.missing_model;
     result.cost = result.judged > 0 ? sum / result.judged : 1.0;
     return result;
+}
+
+double log_evidence(const PixelCost& cost, const PixelCostOptions& options, double rays_per_evidence) {
+    return -0.5 * options.truncation_sigmas * options.truncation_sigmas * cost.cost * cost.judged / rays_per_evidence;
 }
 
 double negative_log_likelihood(const PixelCost& cost, const PixelCostOptions& options) {

@@ -20,7 +20,7 @@ Method method_paper() {
 
 Method method_default() {
     Method method;
-    method.start = Start::kSurface;
+    method.start = Start::kPairs;
     method.start_candidates = 1500;
     method.start_step.rounds = 2;
     method.start_step.max_rays = 400;
@@ -50,7 +50,8 @@ void validate(const Refinement& refinement) {
     check_option("refinement.max_rays", refinement.max_rays, 1, 1e7);
     check_option("refinement.first_extra_sigma_diameters", refinement.first_extra_sigma_diameters, 0.0, 1.0);
     check_option("refinement.cost_sigma_diameters", refinement.cost_sigma_diameters, 0.0, 1.0);
-    check_option("refinement.challenge_ratio", refinement.challenge_ratio, 0.0, 1.0);
+    check_option("refinement.rays_per_evidence", refinement.rays_per_evidence, 1.0, 1e6);
+    check_option("refinement.challenge_nats", refinement.challenge_nats, 0.0, 1e6);
     check_option("refinement.rivals", refinement.rivals, 0, 1e5);
     check_option("refinement.rival_period", refinement.rival_period, 1, 1e6);
     check_option("refinement.rival_modes", refinement.rival_modes, 0, 1000);
@@ -62,6 +63,7 @@ void validate(const Refinement& refinement) {
 
 void validate(const Method& method) {
     check_option("start_candidates", method.start_candidates, 0, 1e6);
+    check_option("start_draws", method.start_draws, 0, 1e7);
     validate(method.start_step, "start_step");
     validate(method.step, "step");
     validate(method.refinement);

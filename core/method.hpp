@@ -9,7 +9,7 @@ namespace nearpose {
 
 enum class Association { kNearest, kProjective };
 enum class Cost { kOverlapMse, kPixels };
-enum class Start { kSphere, kSurface };
+enum class Start { kSphere, kSurface, kPairs };
 
 // The gradient step of one particle: a few rounds of correspondence and least squares.
 struct GradientStep {
@@ -31,17 +31,23 @@ struct Refinement {
     int max_rays = 6000;                         // of a refined view
     double first_extra_sigma_diameters = 0.006;  // halved every round
     double cost_sigma_diameters = 0.002;         // tolerance of the cost that decides between modes
-    double challenge_ratio = 0.9;                // a mode below this share of the tracked mode's cost replaces it
-    int rivals = 0;             // poses that the best modes may be mistaken for, tried as further modes
-    int rival_period = 10;      // frames between such trials once one mode holds
-    int rival_modes = 3;        // of them that are refined
-    double min_support = 0.25;  // share of a mode's rays that agree with the depth; less shows nothing of the object
-    int frames_to_hold = 5;     // frames without replacement after which one mode holds
+    double rays_per_evidence = 10.0;             // neighbouring rays share errors: so many count as one
+    double challenge_nats = 6.0;  // a mode for which the image speaks so much more replaces the tracked one
+    bool outline = true;          // a face laid into a larger flat one is no object
+    int rivals = 0;               // poses that the best modes may be mistaken for, tried as further modes
+    int rival_period = 10;        // frames between such trials once one mode holds
+    int rival_modes = 3;          // of them that are refined
+    double min_support = 0.25;    // share of a mode's rays that agree with the depth; less shows nothing of the object
+    bool fusion = true;           // the chosen mode is fused with the track: arm's motion and sensor's errors
+    int frames_to_search =
+        1;  // frames in a row whose estimate does not convince, after which the object is searched for anew; 0: never
+    int frames_to_hold = 5;  // frames without replacement after which one mode holds
 };
 
 struct Method {
     Start start = Start::kSphere;
     int start_candidates = 0;  // random starts of which the best become the particles; 0: the particles themselves
+    int start_draws = 40000;   // of kPairs: pairs drawn, of which those that the image contradicts least are candidates
     GradientStep start_step;   // taken by each of them
     GradientStep step;         // taken by each particle in each frame
     Cost cost = Cost::kPixels;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "core/random.hpp"
@@ -28,6 +29,13 @@ std::vector<Mode> distinct_modes(const std::vector<Mode>& modes, int max_count, 
         if (std::isfinite(mode.cost) && std::none_of(chosen.begin(), chosen.end(), is_same)) chosen.push_back(mode);
     }
     return chosen;
+}
+
+void set_weights(std::vector<Mode>& modes) {
+    double best = -std::numeric_limits<double>::infinity(), sum = 0.0;
+    for (const Mode& mode : modes) best = std::max(best, mode.log_evidence);
+    for (Mode& mode : modes) sum += mode.weight = std::exp(mode.log_evidence - best);
+    for (Mode& mode : modes) mode.weight /= sum;
 }
 
 std::vector<Pose> rivals_of(const Pose& camera_from_object, const ModelExtent& extent, int count, std::uint64_t seed,

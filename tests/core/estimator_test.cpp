@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <thread>
 
@@ -45,6 +46,7 @@ EstimatorOptions small_options(Method method, int threads) {
     options.method.start_candidates = std::min(options.method.start_candidates, 300);
     options.num_particles = 40;
     options.num_threads = threads;
+    options.tolerance = {0.01, 0.1};  // 160 x 120 pixels of a small part: its depth is known to the sensor's scale
     return options;
 }
 
@@ -203,6 +205,70 @@ TEST(Estimator, AWrongLockIsChallenged) {
         result = estimator.update(observe_at(frame), frame > 0 ? std::optional(motion_to(frame)) : std::nullopt);
     EXPECT_LT(error_m(result, 3), 0.001);
     EXPECT_LT(angle_between(result.camera_from_object.rotation, truth_at(3).rotation), 0.02);
+}
+
+TEST(Estimator, AcceptsARightPoseAndSaysLostWhereNothingIsSeen) {
+    PoseEstimator estimator(kPart, kSolver, small_options(method_default(), 0));
+    EXPECT_EQ(estimator.update(observe_nothing(), {}).verdict, Verdict::kLost);
+    UpdateResult result;
+    for (int frame = 0; frame < 3; ++frame)
+        result = estimator.update(observe_at(frame), frame > 0 ? std::optional(motion_to(frame)) : std::nullopt);
+    EXPECT_EQ(result.verdict, Verdict::kAccept);
+    EXPECT_GT(result.agreement, 0.95);
+    EXPECT_TRUE(result.observability.weak.empty());
+    EXPECT_EQ(estimator.update(observe_nothing(), motion_to(3)).verdict, Verdict::kLost);
+}
+
+TEST(Estimator, WeightsOfModesSumToOneAndTheBestComesFirst) {
+    PoseEstimator estimator(kPart, kSolver, small_options(method_default(), 0));
+    const UpdateResult result = estimator.update(observe_at(0), {});
+    ASSERT_FALSE(result.modes.empty());
+    double sum = 0.0;
+    for (const Mode& mode : result.modes) {
+        sum += mode.weight;
+        EXPECT_LE(mode.weight, result.modes.front().weight + 1e-12);
+        EXPECT_GT(mode.covariance.diagonal().minCoeff(), 0.0);
+    }
+    EXPECT_NEAR(sum, 1.0, 1e-9);
+}
+
+TEST(Estimator, FindsTheObjectAgainWhereItWasPutDown) {
+    PoseEstimator estimator(kPart, kSolver, small_options(method_default(), 0));
+    estimator.update(observe_at(0), {});
+    const Pose elsewhere = perturb_about(truth_at(0), (Twist() << 0, 0, 2.0, 0.05, -0.04, 0.02).finished(),
+                                         kPart->extent().centre_in_object());
+    Mask mask;
+    const DepthImage image = test::render(*kPart, elsewhere, kCamera, 0.9F, &mask);
+    UpdateResult result;
+    for (int frame = 0; frame < 5; ++frame)
+        result = estimator.update(make_observation(image, kCamera, mask), Pose::identity());
+    EXPECT_LT(angle_between(result.camera_from_object.rotation, elsewhere.rotation), 0.02);
+    EXPECT_EQ(result.verdict, Verdict::kAccept);
+}
+
+TEST(Estimator, BeforeAFlatFaceTheArmsMotionHoldsWhatIsNotSeen) {
+    // A slab's face fills the view: it says nothing of two slides and a turn. The camera goes along it.
+    const auto slab =
+        std::make_shared<test::BoxViewGenerator>(std::vector<test::Box>{{{-0.4, -0.4, -0.05}, {0.4, 0.4, 0.05}}});
+    const auto truth = [](int frame) {
+        Pose pose{Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX())), {0.0, 0.0, 0.3}};
+        pose.translation.x() += 0.005 * frame;
+        return pose;
+    };
+    PoseEstimator estimator(slab, kSolver, small_options(method_default(), 0));
+    estimator.reset(truth(0), {0.001, 0.0005});
+    for (int frame = 0; frame < 15; ++frame) {
+        const DepthImage image = test::render(*slab, truth(frame), kCamera, 0.9F, nullptr);
+        const Pose control = truth(frame) * truth(std::max(0, frame - 1)).inverse();
+        const UpdateResult result =
+            estimator.update(make_observation(image, kCamera, {}), frame > 0 ? std::optional(control) : std::nullopt);
+        EXPECT_LT((result.camera_from_object.translation - truth(frame).translation).norm(), 0.001) << frame;
+        EXPECT_LT(angle_between(result.camera_from_object.rotation, truth(frame).rotation), 0.01) << frame;
+        const std::vector<std::string> open = {"slides along x", "slides along y", "turns about z"};
+        std::vector<std::string> weak = result.observability.weak;
+        std::sort(weak.begin(), weak.end());
+        EXPECT_EQ(weak, open) << frame;
+    }
 }
 
 TEST(Estimator, BadOptionsNameTheFieldAndTheBound) {

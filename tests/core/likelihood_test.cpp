@@ -58,7 +58,7 @@ TEST(PixelCost, IsZeroAtTheTruthAndCountsEveryPixel) {
 
 TEST(PixelCost, ASmallErrorInDepthCostsItsSquare) {
     const Observation observation = observe_part(true);
-    const double sigma_m = observation.sensor().sigma_m(0.45);
+    const double sigma_m = observation.sigma_m(0.45);
     // Seen face on, moved by half a sigma: r^2 / truncation^2 = 0.25 / 9, but for the towers' own distance and sigma.
     // At the outline a few rays meet another surface.
     const PixelCost cost = cost_at(shifted(0, 0, 0.5 * sigma_m), observation);

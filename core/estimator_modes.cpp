@@ -1,0 +1,147 @@
+// Part of PoseEstimator: which modes there are, and which of them is the estimate.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include "core/estimator.hpp"
+#include "core/parallel.hpp"
+
+namespace nearpose {
+
+// The tracked pose and the best modes of the swarm and among the rivals are refined side by side. The tracked one stays
+// unless another one's present cost is clearly better: one early wrong lock must not last.
+bool PoseEstimator::take_refined_mode(const Observation& observation, UpdateResult& result) {
+    const auto begin = std::chrono::steady_clock::now();
+    const Refinement& refinement = options_.method.refinement;
+    const std::vector<Mode> refined = refine_all(modes_to_refine(observation, result), observation, result);
+    const Eigen::Vector3d centre = views_->extent().centre_in_object();
+    result.modes = distinct_modes(refined, static_cast<int>(refined.size()), centre, mode_distance());
+    result.seconds.refinement = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const Mode& best = result.modes.front();
+    const Mode& tracked = refined.front();
+    const bool replaced = !tracked_ || best.log_evidence > tracked.log_evidence + refinement.challenge_nats;
+    const Mode chosen = replaced ? best : tracked;
+    if (chosen.support < refinement.min_support) return false;
+    const bool other =
+        tracked_ && !same_mode(best.camera_from_object, tracked.camera_from_object, centre, mode_distance());
+    result.mode_replaced = replaced && other;
+    if (result.mode_replaced) rivals_tried_ = false;
+    tracked_ = chosen;
+    if (refinement.fusion) correct_tracked(chosen, result.mode_replaced, observation);
+    weigh_rivals(result, rivals_due());
+    result.score = std::clamp(1.0 - chosen.cost, 0.0, 1.0);
+    // The swarm learns of it in place of its least likely member.
+    const auto worst = std::max_element(particles_.weights.begin(), particles_.weights.end());
+    particles_.poses[worst - particles_.weights.begin()] = chosen.camera_from_object;
+    *worst = particles_.weights[map_index(particles_.weights)];
+    return true;
+}
+
+std::vector<Mode> PoseEstimator::refine_all(const std::vector<Mode>& modes, const Observation& observation,
+                                            UpdateResult& result) const {
+    const Refinement& refinement = options_.method.refinement;
+    const ObservedGrid observed = observe_on(grid_for(observation, refinement.max_rays), observation);
+    const StepContext context = context_for(observation, observed, options_.method.step);
+    std::vector<MovedParticle> moved(modes.size());
+    parallel_for(static_cast<int>(modes.size()), options_.num_threads,
+                 [&](int k) { moved[k] = refine_mode(modes[k].camera_from_object, context, refinement); });
+    std::vector<Mode> refined;
+    for (const MovedParticle& mode : moved) {
+        refined.push_back({mode.camera_from_object, mode.cost, mode.support, mode.log_evidence});
+        result.counts += mode.counts;
+        result.seconds.stages += mode.seconds;
+    }
+    return refined;
+}
+
+// The tracked mode first (where there is one), then the swarm's, then the rivals.
+std::vector<Mode> PoseEstimator::modes_to_refine(const Observation& observation, UpdateResult& result) const {
+    const Refinement& refinement = options_.method.refinement;
+    const Eigen::Vector3d centre = views_->extent().centre_in_object();
+    std::vector<Mode> swarm;
+    for (int i = 0; i < particles_.size(); ++i) swarm.push_back({particles_.poses[i], last_costs_[i], 0.0});
+    const std::vector<Mode> leaders = distinct_modes(swarm, refinement.modes, centre, mode_distance());
+    std::vector<Mode> modes;
+    if (tracked_) modes.push_back(*tracked_);
+    modes.insert(modes.end(), leaders.begin(), leaders.end());
+    if (refinement.rivals > 0 && rivals_due()) {
+        const std::vector<Mode> near = near_modes(modes);
+        const std::vector<Mode> rivals = best_rivals(modes, observation, result);
+        modes.insert(modes.end(), near.begin(), near.end());
+        modes.insert(modes.end(), rivals.begin(), rivals.end());
+    }
+    bring_to_one_representative(modes);
+    return modes;
+}
+
+// Rivals are tried in every frame until one mode holds, and as long as the image does not tell them apart.
+bool PoseEstimator::rivals_due() const {
+    const Refinement& refinement = options_.method.refinement;
+    constexpr double kTold = 0.01;
+    const bool holds = frames_held_ >= refinement.frames_to_hold && rival_weight_ < kTold;
+    return !holds || step_ % static_cast<std::uint64_t>(refinement.rival_period) == 0;
+}
+
+// What the best mode may be mistaken for by the part's own shape.
+std::vector<Mode> PoseEstimator::near_modes(const std::vector<Mode>& modes) const {
+    std::vector<Mode> near;
+    if (modes.empty()) return near;
+    for (const Pose& turn : options_.symmetries.near) {
+        Mode mode = modes.front();
+        mode.camera_from_object = mode.camera_from_object * turn;
+        near.push_back(mode);
+    }
+    return near;
+}
+
+// Of the poses in which a symmetric part looks the same, the one nearest to where it was before: it does not flip.
+void PoseEstimator::bring_to_one_representative(std::vector<Mode>& modes) const {
+    if (options_.symmetries.empty() || modes.empty()) return;
+    const Pose reference = modes.front().camera_from_object;
+    for (Mode& mode : modes)
+        mode.camera_from_object = nearest_equivalent(mode.camera_from_object, reference, options_.symmetries,
+                                                     views_->extent().centre_in_object());
+}
+
+// How sure it is that the tracked mode is the right one: kept until rivals are tried again.
+void PoseEstimator::weigh_rivals(UpdateResult& result, bool tried) {
+    set_weights(result.modes);
+    const bool was_replaced = result.mode_replaced;
+    frames_held_ = was_replaced ? 0 : frames_held_ + 1;
+    if (!tried) return;
+    rivals_tried_ = true;
+    rival_weight_ = 0.0;
+    for (const Mode& mode : result.modes) {
+        if (!same_mode(mode.camera_from_object, tracked_->camera_from_object, views_->extent().centre_in_object(),
+                       mode_distance()))
+            rival_weight_ += mode.weight;
+    }
+}
+
+std::vector<Mode> PoseEstimator::best_rivals(const std::vector<Mode>& leaders, const Observation& observation,
+                                             UpdateResult& result) const {
+    const Refinement& refinement = options_.method.refinement;
+    constexpr std::size_t kLeaders = 2;
+    const std::size_t used = std::min(leaders.size(), kLeaders);
+    std::vector<Pose> proposals;
+    for (std::size_t k = 0; k < used; ++k) {
+        const int count = refinement.rivals / static_cast<int>(used);
+        const std::vector<Pose> rivals =
+            rivals_of(leaders[k].camera_from_object, views_->extent(), count, options_.seed + k, step_);
+        proposals.insert(proposals.end(), rivals.begin(), rivals.end());
+    }
+    const std::vector<MovedParticle> moved =
+        move_all(proposals, observation, options_.method.start_step, RandomPurpose::kRivals, result);
+    std::vector<Mode> modes;
+    for (const MovedParticle& rival : moved) modes.push_back({rival.camera_from_object, rival.cost, rival.support});
+    return distinct_modes(modes, refinement.rival_modes, views_->extent().centre_in_object(), mode_distance());
+}
+
+ModeDistance PoseEstimator::mode_distance() const {
+    constexpr double kRotation_rad = 0.15;
+    constexpr double kTranslationDiameters = 0.03;
+    return {kRotation_rad, kTranslationDiameters * views_->extent().diameter_m()};
+}
+
+}  // namespace nearpose
