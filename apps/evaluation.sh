@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Makes the tables and pictures of apps/EVALUATION.md from nothing: installs what is needed, builds, runs the grid of
-# apps/experiments/evaluation.json (hours; the same command goes on where it was stopped) and puts what came out below the
-# document's mark. What is written above the mark stays.
+# apps/experiments/evaluation.json and accuracy.json (hours; the same command goes on where it was stopped) and puts what came
+# out below the document's mark. What is written above the mark stays.
 # usage: apps/evaluation.sh [FOLDER]   (results; default results/evaluation)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -13,6 +13,7 @@ cmake --preset release -DNEARPOSE_TESTS=OFF >/dev/null
 cmake --build --preset release --target nearpose
 nearpose=build/release/apps/nearpose
 "$nearpose" experiment apps/experiments/evaluation.json --out "$out"
+"$nearpose" experiment apps/experiments/accuracy.json --out "$out/accuracy"
 
 # What a run looks like: the first, a middle and the last frame of an approach, with the outline of the estimate.
 "$nearpose" simulate --scenario piston --seed 1 --out "$out/piston/dataset" --force
@@ -22,12 +23,12 @@ nearpose=build/release/apps/nearpose
 line=$(grep -nxF -- "$mark" "$document" | cut -d: -f1) || { echo "nearpose: $document has no line  $mark" >&2; exit 1; }
 rm -rf apps/experiments/pictures
 mkdir -p apps/experiments/pictures
-cp "$out"/*.png apps/experiments/pictures/
+cp "$out"/*.png "$out"/accuracy/*.png apps/experiments/pictures/
 for frame in 000000 000030 000059; do cp "$out/piston/pictures/$frame.png" "apps/experiments/pictures/piston-$frame.png"; done
 {
     head -n "$line" "$document"
     echo
-    tail -n +3 "$out/results.md" | sed 's|](\([a-z0-9-]*\.png\))|](experiments/pictures/\1)|'
+    cat <(tail -n +3 "$out/accuracy/results.md") <(tail -n +3 "$out/results.md") | sed 's|](\([a-z0-9-]*\.png\))|](experiments/pictures/\1)|'
 } >"$document.new"
 mv "$document.new" "$document"
 echo "the tables and pictures in $document are those of $out"

@@ -83,7 +83,7 @@ Estimates read_estimates(const std::filesystem::path& results_csv, const SceneTr
             ++without_truth;
             continue;
         }
-        const EstimatedFrame estimate{row.camera_from_object, row.score, row.time_s, false, std::nullopt};
+        const EstimatedFrame estimate{row.camera_from_object, row.score, row.time_s, false, {}, {}};
         const auto [place, added] = estimates.of_frame.emplace(row.image_id, estimate);
         if (!added) ++second_rows;
         if (!added && row.score > place->second.score) place->second = estimate;

@@ -30,8 +30,7 @@ double largest_distance_m(const Corners& corners, const Pose& a, const Pose& b) 
 
 // The true pose, turned about the axis to where it is nearest to `estimate`: the best of some samples, then golden
 // sections around it.
-Pose nearest_turn(const data_set::ContinuousSymmetry& symmetry, const Corners& corners, const Pose& estimate,
-                  const Pose& truth) {
+Pose nearest_turn(const AxisOfRevolution& symmetry, const Corners& corners, const Pose& estimate, const Pose& truth) {
     constexpr int kSamples = 360;
     constexpr int kSections = 60;
     constexpr double kStep_rad = 2.0 * std::numbers::pi / kSamples;
@@ -172,7 +171,7 @@ Pose nearest_equivalent(const Pose& estimate, const Pose& truth, const data_set:
     for (const Pose& symmetry : model.discrete_symmetries) equals.push_back(truth * symmetry);
     for (const Pose& pose : equals) {
         consider(pose);
-        for (const data_set::ContinuousSymmetry& symmetry : model.continuous_symmetries) {
+        for (const AxisOfRevolution& symmetry : model.continuous_symmetries) {
             consider(nearest_turn(symmetry, corners, estimate, pose));
         }
     }
@@ -188,10 +187,13 @@ FrameErrors frame_errors(const TrueFrame& truth, const std::optional<EstimatedFr
     FrameErrors frame;
     frame.frame_id = truth.frame_id;
     frame.visibility = truth.visibility;
+    frame.shown = truth.shown;
+    frame.part_moved = truth.part_moved;
     if (!estimate) return frame;
     frame.score = estimate->score;
     frame.time_s = estimate->time_s;
     frame.predicted = estimate->predicted;
+    frame.verdict = estimate->verdict;
 
     const Pose& estimated = estimate->camera_from_object;
     const Pose nearest = nearest_equivalent(estimated, truth.camera_from_object, shape.info);

@@ -11,6 +11,7 @@
 #include "core/camera.hpp"
 #include "core/depth_image.hpp"
 #include "core/pose.hpp"
+#include "core/verdict.hpp"
 
 namespace nearpose::evaluation {
 
@@ -26,10 +27,19 @@ Visibility visibility_of(const std::vector<Eigen::Vector3f>& visible_points_in_c
 // From the depth measured in the mask of the visible part, both of `camera`'s size; nothing where none is.
 std::optional<Visibility> visibility_of(const DepthImage& depth, const Mask& visible, const PinholeCamera& camera);
 
+// What there is to be seen in a frame's image.
+enum class Shown {
+    kPart,
+    kNothing,   // of the part: it is out of view, or not there
+    kNonsense,  // what no camera would see there
+};
+
 struct TrueFrame {
     int frame_id = 0;
-    Pose camera_from_object;
+    Pose camera_from_object;  // but for kPart: where the part would be
     std::optional<Visibility> visibility;
+    Shown shown = Shown::kPart;
+    bool part_moved = false;  // the part was put down elsewhere since the frame before
 };
 
 struct EstimatedFrame {
@@ -38,6 +48,7 @@ struct EstimatedFrame {
     double time_s = 0.0;                 // for the whole frame; < 0: not known
     bool predicted = false;              // the object was not seen; the pose is a prediction
     std::optional<Matrix6d> covariance;  // of camera_from_object * exp(twist), rotation first
+    std::optional<Verdict> verdict = {};
 };
 
 // Errors of one pose. Of the poses in which a symmetric part looks the same, the one counts that is nearest.
@@ -70,6 +81,9 @@ struct FrameErrors {
     double score = 0.0;
     double time_s = -1.0;
     bool predicted = false;
+    std::optional<Verdict> verdict;  // none: not known; a frame without a pose may have one
+    Shown shown = Shown::kPart;      // where it is not the part, the errors are no errors
+    bool part_moved = false;         // as in TrueFrame
 };
 
 // `camera` is for MSPD alone.
@@ -77,7 +91,8 @@ FrameErrors frame_errors(const TrueFrame& truth, const std::optional<EstimatedFr
                          const PinholeCamera& camera);
 
 // A CSV table, a row a frame, millimetres and degrees; what it does not know is left empty. Reading gives back what was
-// written to the digits that were written; throws std::runtime_error naming file, line and column.
+// written to the digits that were written, and takes tables from before there were verdicts; throws std::runtime_error
+// naming file, line and column.
 std::string table_of(const std::vector<FrameErrors>& frames);
 std::vector<FrameErrors> read_table(const std::filesystem::path& csv);
 

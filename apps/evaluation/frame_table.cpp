@@ -70,10 +70,22 @@ constexpr std::array kColumns = {
 #undef OF_POSE
 #undef OF_COVARIANCE
 
-std::string header() {
+// The words of columns that hold one, in the order of their enumerations.
+constexpr std::array kVerdicts = {"accept", "continue", "lost"};
+constexpr std::array kShown = {"part", "nothing", "nonsense"};
+
+constexpr std::size_t kFirst = 2;  // columns before those of numbers
+constexpr std::size_t kOldFields = kFirst + kColumns.size(), kFields = kOldFields + 3;
+
+// Of tables from before there were verdicts.
+std::string old_header() {
     std::string text = "im_id,predicted";
     for (const Column& column : kColumns) text += std::string(",") + column.name;
     return text;
+}
+
+std::string header() {
+    return old_header() + ",verdict,shown,part_moved";
 }
 
 // A cell of the file, with what is needed to say where it is.
@@ -98,24 +110,44 @@ struct Cell {
         if (!value || std::isnan(*value)) throw error("is \"" + std::string(text) + "\", but must be a number");
         return *value;
     }
+    bool flag() const {
+        if (text != "0" && text != "1") throw error("must be 0 or 1");
+        return text == "1";
+    }
+    // Its place among `words`.
+    template <std::size_t N>
+    int word(const std::array<const char*, N>& words) const {
+        std::string known;
+        for (std::size_t i = 0; i < N; ++i) {
+            if (text == words[i]) return static_cast<int>(i);
+            known += (i == 0 ? "" : ", ") + std::string(words[i]);
+        }
+        throw error("is \"" + std::string(text) + "\", but must be one of " + known);
+    }
 };
 
-FrameErrors frame_of(const std::filesystem::path& path, std::size_t line, std::string_view text) {
+void read_words(const std::filesystem::path& path, std::size_t line, const std::vector<std::string_view>& fields,
+                FrameErrors& frame) {
+    const Cell verdict{path, line, "verdict", fields[kOldFields]};
+    if (!verdict.text.empty()) frame.verdict = static_cast<Verdict>(verdict.word(kVerdicts));
+    frame.shown = static_cast<Shown>(Cell{path, line, "shown", fields[kOldFields + 1]}.word(kShown));
+    frame.part_moved = Cell{path, line, "part_moved", fields[kOldFields + 2]}.flag();
+}
+
+FrameErrors frame_of(const std::filesystem::path& path, std::size_t line, std::string_view text,
+                     std::size_t num_fields) {
     const std::vector<std::string_view> fields = data_set::split(text, ',');
-    if (fields.size() != kColumns.size() + 2) {
+    if (fields.size() != num_fields) {
         throw std::runtime_error(path.string() + ": line " + std::to_string(line) + ": has " +
-                                 std::to_string(fields.size()) + " columns instead of " +
-                                 std::to_string(kColumns.size() + 2));
+                                 std::to_string(fields.size()) + " columns instead of " + std::to_string(num_fields));
     }
     FrameErrors frame;
     frame.frame_id = Cell{path, line, "im_id", fields[0]}.integer();
-    const Cell predicted{path, line, "predicted", fields[1]};
-    if (predicted.text != "0" && predicted.text != "1") throw predicted.error("must be 0 or 1");
-    frame.predicted = predicted.text == "1";
-    if (!fields[2].empty()) frame.errors.emplace();
+    frame.predicted = Cell{path, line, "predicted", fields[1]}.flag();
+    if (!fields[kFirst].empty()) frame.errors.emplace();
     for (std::size_t i = 0; i < kColumns.size(); ++i) {
         const Column& column = kColumns[i];
-        const Cell cell{path, line, column.name, fields[i + 2]};
+        const Cell cell{path, line, column.name, fields[i + kFirst]};
         if (cell.text.empty()) {
             if (column.of_pose && frame.errors) throw cell.error("is empty, but the frame has a pose");
             continue;
@@ -124,6 +156,7 @@ FrameErrors frame_of(const std::filesystem::path& path, std::size_t line, std::s
         if (value == nullptr) throw cell.error("is given, but not what it belongs to");
         *value = cell.number() / column.units;
     }
+    if (num_fields == kFields) read_words(path, line, fields, frame);
     return frame;
 }
 
@@ -138,7 +171,9 @@ std::string table_of(const std::vector<FrameErrors>& frames) {
             table += ",";
             if (value != nullptr) table += data_set::format_fixed(column.units * *value, kDecimals);
         }
-        table += "\n";
+        table += std::string(",") + (frame.verdict ? kVerdicts.at(static_cast<std::size_t>(*frame.verdict)) : "");
+        table += std::string(",") + kShown.at(static_cast<std::size_t>(frame.shown));
+        table += frame.part_moved ? ",1\n" : ",0\n";
     }
     return table;
 }
@@ -146,10 +181,12 @@ std::string table_of(const std::vector<FrameErrors>& frames) {
 std::vector<FrameErrors> read_table(const std::filesystem::path& csv) {
     const std::string text = data_set::read_whole_file(csv, kMaxTableBytes);
     std::vector<FrameErrors> frames;
-    std::size_t number = 0;
+    std::size_t number = 0, num_fields = kFields;
     for (const std::string_view line : data_set::lines(text)) {
         if (++number > 1) {
-            frames.push_back(frame_of(csv, number, line));
+            frames.push_back(frame_of(csv, number, line, num_fields));
+        } else if (line == old_header()) {
+            num_fields = kOldFields;
         } else if (line != header()) {
             throw std::runtime_error(csv.string() + ": line 1: is not the header of a table of frames");
         }

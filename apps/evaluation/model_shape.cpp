@@ -9,11 +9,6 @@
 
 namespace nearpose::evaluation {
 
-Pose turn_about(const data_set::ContinuousSymmetry& symmetry, double angle_rad) {
-    const Eigen::Quaterniond rotation(Eigen::AngleAxisd(angle_rad, symmetry.axis_in_object));
-    return {rotation, symmetry.offset_in_object_m - rotation * symmetry.offset_in_object_m};
-}
-
 std::vector<Pose> sampled_symmetries(const data_set::ModelInfo& info) {
     // The vertex that is farthest from the axis travels at most this share of the diameter between two samples.
     constexpr double kMaxStep = 0.01;
@@ -23,7 +18,7 @@ std::vector<Pose> sampled_symmetries(const data_set::ModelInfo& info) {
     if (info.continuous_symmetries.empty()) return discrete;
     std::vector<Pose> symmetries;
     for (const Pose& pose : discrete) {
-        for (const data_set::ContinuousSymmetry& axis : info.continuous_symmetries) {
+        for (const AxisOfRevolution& axis : info.continuous_symmetries) {
             for (int i = 0; i < kSteps; ++i) {
                 symmetries.push_back(turn_about(axis, 2.0 * std::numbers::pi / kSteps * i) * pose);
             }

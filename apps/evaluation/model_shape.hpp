@@ -36,7 +36,4 @@ ModelShape load_shape(const std::filesystem::path& models_folder, int object_id)
 // discrete one with the identity, after each of 315 turns about each axis.
 std::vector<Pose> sampled_symmetries(const data_set::ModelInfo& info);
 
-// The turn about the symmetry's axis: object_from_object.
-Pose turn_about(const data_set::ContinuousSymmetry& symmetry, double angle_rad);
-
 }  // namespace nearpose::evaluation

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
 #include "apps/degrees.hpp"
+#include "apps/evaluation/interruptions.hpp"
 #include "core/random.hpp"
 
 namespace nearpose::evaluation {
@@ -52,13 +54,36 @@ std::optional<double> share_inside(const Frames& frames, std::optional<double> P
 
 void count_frames(const Frames& frames, const ErrorLimit& coarse, RunSummary& summary) {
     summary.frames = static_cast<int>(frames.size());
+    const std::vector<bool> excused = excused_frames(frames);
     bool arrived = false;
-    for (const FrameErrors& frame : frames) {
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        const FrameErrors& frame = frames[i];
         if (!frame.errors) ++summary.frames_without_pose;
         if (frame.predicted) ++summary.frames_predicted;
-        arrived = arrived || within(frame, coarse);
-        if (arrived && !within(frame, coarse)) ++summary.frames_lost;
+        if (frame.shown == Shown::kPart) ++summary.frames_shown;
+        if (arrived && !excused[i]) {
+            ++summary.frames_after_arrival;
+            if (!within(frame, coarse)) ++summary.frames_lost;
+        }
+        arrived = arrived || (frame.shown == Shown::kPart && within(frame, coarse));
     }
+}
+
+// Whether what holds in the end has held since the burn-in, but for excused frames.
+bool held_since(int burn_in, const Arrival& arrival, const std::vector<bool>& excused) {
+    if (!arrival.holds_from) return false;
+    auto from = static_cast<std::size_t>(*arrival.holds_from);
+    while (from > 0 && excused[from - 1]) --from;
+    return static_cast<int>(from) <= burn_in;
+}
+
+std::optional<int> frames_to_refind(const Frames& frames, const ErrorLimit& coarse) {
+    const std::optional<int> returned = return_index(frames);
+    for (int i = returned.value_or(0); returned && i < static_cast<int>(frames.size()); ++i) {
+        const FrameErrors& frame = frames[static_cast<std::size_t>(i)];
+        if (frame.shown == Shown::kPart && within(frame, coarse)) return i - *returned + 1;
+    }
+    return std::nullopt;
 }
 
 void summarise_errors(const Frames& frames, double model_diameter_m, RunSummary& summary) {
@@ -135,9 +160,12 @@ bool within(const FrameErrors& frame, const ErrorLimit& limit) {
 
 Arrival arrival_of(const std::vector<FrameErrors>& frames, const ErrorLimit& limit) {
     Arrival arrival;
+    const std::vector<bool> excused = excused_frames(frames);
     for (int i = 0; i < static_cast<int>(frames.size()); ++i) {
-        if (!within(frames[static_cast<std::size_t>(i)], limit)) {
-            arrival.holds_from.reset();
+        const auto index = static_cast<std::size_t>(i);
+        if (frames[index].shown != Shown::kPart) continue;
+        if (!within(frames[index], limit)) {
+            if (!excused[index]) arrival.holds_from.reset();
             continue;
         }
         if (!arrival.first_index) arrival.first_index = i;
@@ -152,7 +180,12 @@ RunSummary summarise(const std::vector<FrameErrors>& frames, double model_diamet
     summary.coarse = arrival_of(frames, options.coarse);
     summary.fine = arrival_of(frames, options.fine);
     const auto burn_in = std::clamp<std::ptrdiff_t>(options.burn_in, 0, static_cast<std::ptrdiff_t>(frames.size()));
-    const Frames settled(frames.begin() + burn_in, frames.end());
+    summary.held = held_since(options.burn_in, summary.coarse, excused_frames(frames));
+    summary.frames_to_refind = frames_to_refind(frames, options.coarse);
+    summary.verdicts = count_verdicts(frames, options.tolerance);
+    Frames settled;
+    std::copy_if(frames.begin() + burn_in, frames.end(), std::back_inserter(settled),
+                 [](const FrameErrors& frame) { return frame.shown == Shown::kPart; });
     summarise_errors(settled, model_diameter_m, summary);
     summarise_covariances(settled, summary);
     std::vector<double> times_ms;

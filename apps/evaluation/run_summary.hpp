@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/evaluation/frame_errors.hpp"
+#include "apps/evaluation/verdict_counts.hpp"
 
 namespace nearpose::evaluation {
 
@@ -23,10 +24,11 @@ struct ErrorLimit {
     double rotation_rad = 0.0872664625997164788;  // 5 degrees
 };
 
-// First within a limit, and from when on for good.
+// First within a limit, and from when on for good. Frames that do not show the part count for neither, and a pose that
+// is not there in an excused frame (interruptions.hpp) does not end what holds.
 struct Arrival {
     std::optional<int> first_index;  // into the frames; nothing: never
-    std::optional<int> holds_from;   // nothing: the last frame is not within it
+    std::optional<int> holds_from;   // nothing: the last frame that counts is not within it
     bool stays() const { return first_index && holds_from && *first_index == *holds_from; }
 };
 bool within(const FrameErrors& frame, const ErrorLimit& limit);  // false without a pose
@@ -40,12 +42,18 @@ struct SummaryOptions {
     int burn_in = 15;                               // frames at the beginning that the error statistics leave out
     ErrorLimit coarse;                              // 10 mm, 5 degrees
     ErrorLimit fine{0.002, 0.0174532925199432958};  // 2 mm, 1 degree
+    Tolerance tolerance = {};                       // of accepted poses
 };
 
-// Of one run. Errors are of the frames with a pose after the burn-in.
+// Of one run. Errors are of the frames after the burn-in that show the part and have a pose.
 struct RunSummary {
     int frames = 0, frames_without_pose = 0, frames_predicted = 0;
-    int frames_lost = 0;  // after the first arrival: not within the coarse limit
+    int frames_shown = 0;          // that show the part
+    int frames_after_arrival = 0;  // after the first arrival, but for the excused ones (interruptions.hpp)
+    int frames_lost = 0;           // of these: not within the coarse limit
+    bool held = false;             // within the coarse limit in all frames after the burn-in, but for the excused ones
+    std::optional<int> frames_to_refind;  // from the return (interruptions.hpp) to the coarse limit, both included
+    VerdictCounts verdicts;
     Statistics translation_mm, rotation_deg;
     Statistics translation_axis_mm[3], rotation_axis_deg[3];  // absolute values along the camera's x, y, z
     Statistics add_mm, add_s_mm, mssd_mm, mspd_px;

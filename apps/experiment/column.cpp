@@ -66,6 +66,7 @@ std::vector<ColumnRule> run_columns() {
     add_share("arrives", "runs that arrive");
     add_share("stays", "arrive and stay");
     add_share("held", "held after burn-in");
+    add_share("first_within_3", "within 10 mm, 5 deg in frames 0-2");
     add_share("converged", "converged");
     add_share("arrives_fine", "within 2 mm, 1 deg");
     const auto add_frames = [&](const char* name, const char* title) {
@@ -74,12 +75,18 @@ std::vector<ColumnRule> run_columns() {
     add_frames("frames_to_arrive", "until arrival");
     add_frames("frames_to_hold", "until it holds");
     add_frames("frames_to_fine", "until 2 mm, 1 deg");
+    add_frames("frames_to_refind", "until found again");
+    add_frames("first_accept", "until the first right accept");
     const auto add_percent = [&](const char* name, const char* title) {
         rules.push_back({name, name, Pooling::kMean, "", 100.0, {title, "%", 1}});
     };
     add_percent("lost", "frames lost");
     add_percent("without_pose", "frames without pose");
     add_percent("predicted", "frames predicted");
+    add_percent("accepted", "frames accepted");
+    add_percent("false_accepts", "falsely accepted");
+    add_percent("false_accepts_of_accepts", "false among accepts");
+    add_percent("lost_verdicts", "verdict lost");
     add_percent("add_auc", "AUC of ADD");
     add_percent("add_s_auc", "AUC of ADD-S");
     add_percent("add_auc_diameter", "AUC of ADD, 0.1 d");
@@ -164,6 +171,7 @@ void add_errors(const RunSummary& summary, Figures& figures) {
     add_statistics("add_s", summary.add_s_mm, figures);
     add_statistics("mssd", summary.mssd_mm, figures);
     add_statistics("mspd", summary.mspd_px, figures);
+    if (summary.frames_shown == 0) return;
     figures["add_auc"] = summary.add_auc;
     figures["add_s_auc"] = summary.add_s_auc;
     figures["add_auc_diameter"] = summary.add_auc_diameter;
@@ -173,16 +181,15 @@ void add_errors(const RunSummary& summary, Figures& figures) {
     if (summary.inside_90_translation) figures["inside_90_translation"] = *summary.inside_90_translation;
 }
 
-}  // namespace
-
-Figures figures_of(const RunSummary& summary, const evaluation::SummaryOptions& options) {
-    Figures figures;
-    add_errors(summary, figures);
+// None for a run that never shows the part: there is nothing to arrive at.
+void add_arrivals(const RunSummary& summary, const evaluation::SummaryOptions& options, Figures& figures) {
+    if (summary.frames_shown == 0) return;
     const auto flag = [](bool value) { return value ? 1.0 : 0.0; };
     const evaluation::Arrival& coarse = summary.coarse;
     figures["arrives"] = flag(coarse.first_index.has_value());
+    figures["first_within_3"] = flag(coarse.first_index && *coarse.first_index < 3);
     figures["stays"] = flag(coarse.stays());
-    figures["held"] = flag(coarse.holds_from && *coarse.holds_from <= options.burn_in);
+    figures["held"] = flag(summary.held);
     figures["converged"] =
         flag(summary.translation_mm.count > 0 && summary.translation_mm.median <= 1e3 * options.coarse.translation_m &&
              summary.rotation_deg.median <= options.coarse.rotation_rad * 180.0 / M_PI);
@@ -191,10 +198,30 @@ Figures figures_of(const RunSummary& summary, const evaluation::SummaryOptions& 
     if (coarse.first_index) figures["frames_to_arrive"] = *coarse.first_index + 1;
     if (coarse.holds_from) figures["frames_to_hold"] = *coarse.holds_from + 1;
     if (summary.fine.first_index) figures["frames_to_fine"] = *summary.fine.first_index + 1;
+    if (summary.frames_to_refind) figures["frames_to_refind"] = *summary.frames_to_refind;
+    if (summary.frames_after_arrival > 0)
+        figures["lost"] = summary.frames_lost / static_cast<double>(summary.frames_after_arrival);
+}
+
+void add_verdicts(const evaluation::VerdictCounts& verdicts, Figures& figures) {
+    if (verdicts.frames == 0) return;
+    const double frames = verdicts.frames;
+    figures["accepted"] = verdicts.accepts / frames;
+    figures["false_accepts"] = verdicts.false_accepts / frames;
+    figures["lost_verdicts"] = verdicts.lost / frames;
+    if (verdicts.accepts > 0)
+        figures["false_accepts_of_accepts"] = verdicts.false_accepts / static_cast<double>(verdicts.accepts);
+    if (verdicts.first_right_accept) figures["first_accept"] = *verdicts.first_right_accept + 1;
+}
+
+}  // namespace
+
+Figures figures_of(const RunSummary& summary, const evaluation::SummaryOptions& options) {
+    Figures figures;
+    add_errors(summary, figures);
+    add_arrivals(summary, options, figures);
+    add_verdicts(summary.verdicts, figures);
     const double frames = std::max(1, summary.frames);
-    if (coarse.first_index && *coarse.first_index + 1 < summary.frames) {
-        figures["lost"] = summary.frames_lost / static_cast<double>(summary.frames - *coarse.first_index - 1);
-    }
     figures["without_pose"] = summary.frames_without_pose / frames;
     figures["predicted"] = summary.frames_predicted / frames;
     return figures;

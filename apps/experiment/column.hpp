@@ -8,6 +8,20 @@
 //   _median     translation_median: the median over runs of translation_mean, with the interval of its ranks
 // Shares of runs have Wilson's interval. Frames until something are medians in which a run that never gets there
 // counts as later than all others; where that is half of the runs, there is no value.
+//
+// Frames that do not show the part (look_away, nonsense_frames, scene) count for no error and no arrival. `held`,
+// `stays`, `frames_to_hold` and `lost` also leave out the first 3 frames that show it again and the first 3 in which it
+// lies elsewhere (object_moves): in them it may be found again. A run that never shows the part has none of all these.
+//
+// Verdicts are counted over all frames of a run, those of the burn-in and those without the part too:
+//   accepted, lost_verdicts   the shares of frames with that verdict
+//   false_accepts             of frames accepted with a wrong pose: beyond tolerance_mm or tolerance_deg at the centre
+//                             of the box, or any pose in a frame that does not show the part
+//   false_accepts_of_accepts  the share of a run's accepts that are false; its mean leaves out runs without accepts
+//   first_accept              frames up to and with the first accept that is right
+//   frames_to_refind          frames from the one that shows the part again, or where it lies elsewhere, up to and with
+//                             the first within 10 mm and 5 degrees
+//   first_within_3            the share of runs within 10 mm and 5 degrees in one of the first three frames
 #pragma once
 
 #include <map>

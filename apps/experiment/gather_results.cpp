@@ -34,7 +34,7 @@ std::optional<double> x_of(const CurveSpec& curve, const evaluation::Visibility&
 void add_points(const CurveSpec& curve, const std::vector<evaluation::FrameErrors>& frames, std::size_t burn_in,
                 std::vector<evaluation::CurvePoint>& points) {
     for (std::size_t i = burn_in; i < frames.size(); ++i) {
-        if (!frames[i].errors || !frames[i].visibility) continue;
+        if (!frames[i].errors || !frames[i].visibility || frames[i].shown != evaluation::Shown::kPart) continue;
         const std::optional<double> x = x_of(curve, *frames[i].visibility);
         const evaluation::PoseErrors& errors = *frames[i].errors;
         const double y = curve.y == "translation" ? 1e3 * errors.translation_m : kDegrees * errors.rotation_rad;

@@ -12,6 +12,7 @@ namespace {
 struct Lane {
     std::string key;  // of the estimator's settings
     program::EstimatorSetup setup;
+    bool starts_at_truth = false;  // before every frame
     PoseEstimator estimator;
     std::vector<evaluation::FrameErrors> frames;
     std::vector<double> cpu_s;
@@ -41,8 +42,12 @@ class FrameInput {
 };
 
 evaluation::TrueFrame truth_of(const simulate::SimulatedFrame& frame, const PinholeCamera& camera) {
-    evaluation::TrueFrame truth{frame.id, frame.camera_from_object,
-                                evaluation::visibility_of(frame.depth, frame.visible, camera)};
+    evaluation::TrueFrame truth{frame.id, frame.camera_from_object, {}};
+    if (!frame.shows_part()) {
+        truth.shown = frame.nonsense ? evaluation::Shown::kNonsense : evaluation::Shown::kNothing;
+        return truth;
+    }
+    truth.visibility = evaluation::visibility_of(frame.depth, frame.visible, camera);
     if (truth.visibility && frame.truth.silhouette_pixels > 0) {
         truth.visibility->visible_fraction =
             static_cast<double>(frame.truth.visible_pixels) / frame.truth.silhouette_pixels;
@@ -50,12 +55,16 @@ evaluation::TrueFrame truth_of(const simulate::SimulatedFrame& frame, const Pinh
     return truth;
 }
 
+// A start that is right, but for about as much as a pose is off from one frame to the next.
+constexpr Diffusion kSpreadAtTruth{0.0087266462599716477, 0.001};  // half a degree, 1 mm
+
 void track(Lane& lane, FrameInput& input, const std::optional<Pose>& now_from_before,
            const evaluation::TrueFrame& truth, const evaluation::ModelShape& shape, const PinholeCamera& camera) {
     const Observation& observation = input.observation(lane.setup.use_mask);
     const double begin = compare::thread_cpu_s();
-    const UpdateResult result =
-        lane.estimator.update(observation, lane.setup.use_control ? now_from_before : std::nullopt);
+    if (lane.starts_at_truth) lane.estimator.reset(truth.camera_from_object, kSpreadAtTruth);
+    const bool moved = lane.setup.use_control && !lane.starts_at_truth;  // the true pose is of this frame already
+    const UpdateResult result = lane.estimator.update(observation, moved ? now_from_before : std::nullopt);
     lane.cpu_s.push_back(compare::thread_cpu_s() - begin + input.cpu_s(lane.setup.use_mask));
     std::optional<evaluation::EstimatedFrame> estimate;
     if (result.status != UpdateStatus::kNoPose) {
@@ -67,6 +76,7 @@ void track(Lane& lane, FrameInput& input, const std::optional<Pose>& now_from_be
         estimate->covariance = result.covariance;
     }
     lane.frames.push_back(evaluation::frame_errors(truth, estimate, shape, camera));
+    lane.frames.back().verdict = result.verdict;  // also where there is no pose
 }
 
 std::string estimator_key(const Settings& settings) {
@@ -79,8 +89,10 @@ std::vector<Lane> make_lanes(const std::vector<Settings>& settings, std::uint64_
     for (const Settings& cell : settings) {
         const std::string key = estimator_key(cell);
         if (std::any_of(lanes.begin(), lanes.end(), [&](const Lane& lane) { return lane.key == key; })) continue;
-        const program::EstimatorSetup setup = estimator_setup(cell, seed);
-        lanes.push_back({key, setup, program::make_estimator(setup, workshop.views(cell)), {}, {}});
+        program::EstimatorSetup setup = estimator_setup(cell, seed);
+        setup.symmetries = workshop.part(cell).symmetries;
+        lanes.push_back(
+            {key, setup, starts_at_truth(cell), program::make_estimator(setup, workshop.views(cell, seed)), {}, {}});
     }
     return lanes;
 }
@@ -107,10 +119,13 @@ std::vector<CellResult> run_recording(const std::vector<Settings>& settings, std
     const PinholeCamera& camera = recording.options().camera;
     std::vector<Lane> lanes = make_lanes(settings, seed, workshop);
     std::optional<Pose> camera_from_world_before;
+    bool part_moved_before = false;
     for (int index = 0; index < recording.num_frames(); ++index) {
         if (!go_on()) return {};
         const simulate::SimulatedFrame frame = recording.frame(index);
-        const evaluation::TrueFrame truth = truth_of(frame, camera);
+        evaluation::TrueFrame truth = truth_of(frame, camera);
+        truth.part_moved = frame.part_moved && !part_moved_before;
+        part_moved_before = frame.part_moved;
         std::optional<Pose> now_from_before;
         if (camera_from_world_before) now_from_before = frame.camera_from_world * camera_from_world_before->inverse();
         camera_from_world_before = frame.camera_from_world;

@@ -5,8 +5,10 @@
 
 #include "apps/data_set/bop_models.hpp"
 #include "apps/data_set/trajectory_tum.hpp"
+#include "apps/experiment/cad_error.hpp"
 #include "apps/import/import_model.hpp"
 #include "apps/model_input.hpp"
+#include "apps/model_symmetries.hpp"
 #include "apps/simulate/sensor_file.hpp"
 #include "raycast/mesh_loader.hpp"
 
@@ -38,6 +40,27 @@ std::optional<double> scaled(const Settings& settings, const char* name, double 
 std::optional<int> whole(const Settings& settings, const char* name) {
     const std::optional<double> value = setting<double>(settings, name);
     return value ? std::optional(static_cast<int>(*value)) : std::nullopt;
+}
+
+std::string cad_of(const Settings& settings) {
+    return setting<std::string>(settings, "cad").value_or("true");
+}
+
+simulate::Disturbances disturbances_of(const Settings& settings) {
+    simulate::Disturbances disturbances;
+    disturbances.nonsense_frames = whole(settings, "nonsense_frames").value_or(0);
+    disturbances.look_away = whole(settings, "look_away").value_or(0);
+    disturbances.object_moves = setting<bool>(settings, "object_moves").value_or(false);
+    const std::string scene = setting<std::string>(settings, "scene").value_or("part");
+    disturbances.scene = scene == "part"    ? simulate::SceneContent::kPart
+                         : scene == "empty" ? simulate::SceneContent::kEmpty
+                                            : simulate::SceneContent::kOther;
+    return disturbances;
+}
+
+Tolerance tolerance_of(const Settings& settings) {
+    return {1e-3 * setting<double>(settings, "tolerance_mm").value_or(kTolerance_mm),
+            kRadians * setting<double>(settings, "tolerance_deg").value_or(kTolerance_deg)};
 }
 
 simulate::ScenarioOptions path_options(const Settings& settings, const fs::path& folder) {
@@ -103,6 +126,8 @@ std::unique_ptr<PartAssets> make_part(const Settings& settings, const fs::path& 
     info.diameter_m = data_set::diameter_of(mesh.vertices_in_object);
     info.box_min_in_object_m = assets->part.part.extent.box_min_in_object;
     info.box_max_in_object_m = assets->part.part.extent.box_max_in_object;
+    assets->symmetries = program::find_symmetries(mesh);
+    program::declare(assets->symmetries, info);
     assets->shape = evaluation::shape_of(info, mesh);
     return assets;
 }
@@ -125,6 +150,10 @@ void check_row(TableKind kind, const Settings& settings, const fs::path& folder)
     program::make_solver(setup);
     if (setup.view_samples && setup.views != "raster")
         throw std::invalid_argument("view_samples belongs to the views raster, not " + setup.views);
+    const std::string scene = setting<std::string>(settings, "scene").value_or("part");
+    if (starts_at_truth(settings) && scene != "part")
+        throw std::invalid_argument("start truth: there is no true pose in the scene " + scene);
+    if (is_drawn(cad_of(settings))) with_cad_error(load_part(settings, folder).mesh, cad_of(settings), 1);
 }
 
 }  // namespace
@@ -142,6 +171,7 @@ simulate::RecordingOptions recording_options(const Settings& settings, std::uint
                    number(settings, "time_offset_ms") * 1e-3};
     options.mask = {static_cast<int>(number(settings, "mask_grow")), static_cast<int>(number(settings, "mask_bleed"))};
     options.dropped_fraction = number(settings, "dropped");
+    options.disturbances = disturbances_of(settings);
     options.with_table = flag(settings, "table");
     options.part_name = setting<std::string>(settings, "part").value_or("");
     return options;
@@ -159,15 +189,22 @@ program::EstimatorSetup estimator_setup(const Settings& settings, std::uint64_t 
     setup.overlap = setting<bool>(settings, "overlap");
     setup.residual = setting<std::string>(settings, "residual");
     setup.gradient = flag(settings, "gradient");
+    setup.without = setting<std::string>(settings, "without").value_or("nothing");
     setup.view_samples = whole(settings, "view_samples");
     setup.use_mask = flag(settings, "mask");
     setup.use_control = flag(settings, "control");
+    setup.tolerance = tolerance_of(settings);
     return setup;
+}
+
+bool starts_at_truth(const Settings& settings) {
+    return setting<std::string>(settings, "start").value_or("none") == "truth";
 }
 
 evaluation::SummaryOptions summary_options(const Settings& settings) {
     evaluation::SummaryOptions options;
     options.burn_in = static_cast<int>(number(settings, "burn_in"));
+    options.tolerance = tolerance_of(settings);
     return options;
 }
 
@@ -206,12 +243,15 @@ const PartAssets& Workshop::part(const Settings& settings) {
     return part_unlocked(settings);
 }
 
-std::shared_ptr<const ViewGenerator> Workshop::views(const Settings& settings) {
+std::shared_ptr<const ViewGenerator> Workshop::views(const Settings& settings, std::uint64_t seed) {
+    const program::EstimatorSetup setup = estimator_setup(settings, seed);
+    const std::string cad = cad_of(settings);
+    if (is_drawn(cad)) return program::make_view_generator(setup, with_cad_error(part(settings).part.mesh, cad, seed));
     const std::lock_guard lock(mutex_);
-    const program::EstimatorSetup setup = estimator_setup(settings, 0);
-    const std::string key = part_key(settings) + setup.views + std::to_string(setup.view_samples.value_or(0));
+    const std::string key = part_key(settings) + setup.views + std::to_string(setup.view_samples.value_or(0)) + cad;
     std::shared_ptr<const ViewGenerator>& views = views_[key];
-    if (!views) views = program::make_view_generator(setup, part_unlocked(settings).part.mesh);
+    if (!views)
+        views = program::make_view_generator(setup, with_cad_error(part_unlocked(settings).part.mesh, cad, seed));
     return views;
 }
 

@@ -22,6 +22,8 @@ namespace nearpose::experiment {
 simulate::RecordingOptions recording_options(const Settings& settings, std::uint64_t seed,
                                              const std::filesystem::path& folder);
 program::EstimatorSetup estimator_setup(const Settings& settings, std::uint64_t seed);
+// Whether the tracker is started at the true pose before every frame.
+bool starts_at_truth(const Settings& settings);
 evaluation::SummaryOptions summary_options(const Settings& settings);
 compare::ViewCell view_cell(const Settings& settings, std::uint64_t seed);
 
@@ -31,6 +33,7 @@ void check(const Description& description);
 struct PartAssets {
     simulate::EmbeddedPart part;
     evaluation::ModelShape shape;
+    Symmetries symmetries;  // found from the mesh; errors count up to the exact ones
 };
 
 // Parts and generators, made when they are first asked for and kept. May be used from several threads at once.
@@ -41,8 +44,8 @@ class Workshop {
     const std::filesystem::path& folder() const { return folder_; }
     // By the settings part, model and unit.
     const PartAssets& part(const Settings& settings);
-    // And by views and view_samples.
-    std::shared_ptr<const ViewGenerator> views(const Settings& settings);
+    // And by views, view_samples and cad; what is drawn of the last is of the seed, and not kept.
+    std::shared_ptr<const ViewGenerator> views(const Settings& settings, std::uint64_t seed);
     const compare::ViewBench& view_bench(const Settings& settings);
 
   private:

@@ -5,6 +5,7 @@
 #include "apps/compare/view_cell.hpp"
 #include "apps/data_set/number_text.hpp"
 #include "apps/estimator_setup.hpp"
+#include "apps/experiment/cad_error.hpp"
 #include "apps/nearest_word.hpp"
 #include "apps/simulate/parts.hpp"
 #include "apps/simulate/scenario.hpp"
@@ -52,6 +53,14 @@ void add_recording_rules(std::vector<SettingRule>& rules) {
     add_number("conveyor_deg", 0.0, 28.0);
     add_number("near_mm", 1.0, 1e5);
     add_number("far_mm", 1.0, 1e5);
+    const auto add_later = [&](const char* name, SettingType type, double high, Words words, Value unsaid) {
+        rules.push_back({kKind, kUse, name, type, 0.0, high, std::move(words), {}, std::move(unsaid)});
+    };
+    // What is to be seen: the part, the table alone, another part in its place.
+    add_later("scene", SettingType::kWord, 0.0, {"part", "empty", "other"}, "part");
+    add_later("nonsense_frames", SettingType::kWhole, 1e5, {}, 0.0);
+    add_later("look_away", SettingType::kWhole, 1e5, {}, 0.0);  // frames
+    add_later("object_moves", SettingType::kFlag, 0.0, {}, false);
 }
 
 void add_estimator_rules(std::vector<SettingRule>& rules) {
@@ -71,6 +80,16 @@ void add_estimator_rules(std::vector<SettingRule>& rules) {
     add("view_samples", SettingType::kWhole, 1, 1e8, {}, {});
     add("mask", SettingType::kFlag, 0, 0, {}, usual.use_mask);
     add("control", SettingType::kFlag, 0, 0, {}, usual.use_control);
+    const auto add_later = [&](const char* name, SettingType type, double low, double high, Words words, Value unsaid) {
+        rules.push_back({TableKind::kRun, SettingUse::kEstimator, name, type, low, high, std::move(words), {}, unsaid});
+    };
+    // What the tracker believes of the part, while the truth's mesh stays what it is.
+    add_later("without", SettingType::kWord, 0, 0, program::parts_of_method(), "nothing");
+    add_later("cad", SettingType::kWord, 0, 0, cad_words(), "true");
+    // truth: it is started at the true pose before every frame, which is what a fit can reach with this sensor.
+    add_later("start", SettingType::kWord, 0, 0, {"none", "truth"}, "none");
+    add_later("tolerance_mm", SettingType::kNumber, 1e-3, 1e3, {}, kTolerance_mm);
+    add_later("tolerance_deg", SettingType::kNumber, 1e-3, 180.0, {}, kTolerance_deg);
     // Frames at the beginning that the errors leave out. Only the figures depend on it.
     rules.push_back({TableKind::kRun, SettingUse::kFigures, "burn_in", SettingType::kWhole, 0, 1e5, {}, 15.0});
 }
@@ -141,7 +160,10 @@ Value read_value(const SettingRule& rule, const data_set::JsonValue& value) {
 
 Settings completed(TableKind kind, Settings settings) {
     for (const SettingRule& rule : setting_rules()) {
-        if (rule.kind != kind || !rule.usual) continue;
+        if (rule.kind != kind) continue;
+        const auto found = settings.find(rule.name);
+        if (rule.unsaid && found != settings.end() && found->second == *rule.unsaid) settings.erase(found);
+        if (!rule.usual) continue;
         if (rule.name == "part" && settings.count("model") != 0) continue;
         settings.emplace(rule.name, *rule.usual);
     }

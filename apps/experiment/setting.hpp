@@ -12,6 +12,9 @@
 
 namespace nearpose::experiment {
 
+// Of the verdict, where nothing else is set: tolerance_mm and tolerance_deg.
+inline constexpr double kTolerance_mm = 2.0, kTolerance_deg = 1.0;
+
 // What the cells of a table are: a recording that an estimator tracks, or the views of a generator by themselves.
 enum class TableKind { kRun, kViews };
 
@@ -31,6 +34,9 @@ struct SettingRule {
     double low = 0.0, high = 0.0;         // of numbers
     std::vector<std::string> words = {};  // that a word may be; empty: any
     std::optional<Value> usual = {};      // where it is not set; nothing: as the scenario, sensor or method has it
+    // What it is where it is not set, of settings that came later: a value like that is left out of a run's settings,
+    // so that runs that were made before still count.
+    std::optional<Value> unsaid = {};
 };
 
 const std::vector<SettingRule>& setting_rules();
@@ -40,7 +46,7 @@ const SettingRule& rule_of(TableKind kind, const std::string& name, const data_s
 // Throws std::runtime_error naming file, place and what it may be.
 Value read_value(const SettingRule& rule, const data_set::JsonValue& value);
 
-// With what is usual where nothing is set.
+// With what is usual where nothing is set, and without what goes unsaid.
 Settings completed(TableKind kind, Settings settings);
 // Those of one use.
 Settings used_for(TableKind kind, SettingUse use, const Settings& settings);

@@ -18,5 +18,8 @@ inline constexpr auto kSpecularDraw = static_cast<RandomPurpose>(121);    // nod
 inline constexpr auto kTaskDraw = static_cast<RandomPurpose>(130);        // the part's motion and how it lies
 inline constexpr auto kThingsDraw = static_cast<RandomPurpose>(131);      // what stands around the part
 inline constexpr auto kDropDraw = static_cast<RandomPurpose>(132);        // which frames are dropped
+inline constexpr auto kNonsenseDraw = static_cast<RandomPurpose>(133);    // which frames are nonsense, and what
+inline constexpr auto kMoveDraw = static_cast<RandomPurpose>(134);        // where the part is put down elsewhere
+inline constexpr auto kStandInDraw = static_cast<RandomPurpose>(135);     // how another part lies in its place
 
 }  // namespace nearpose::simulate

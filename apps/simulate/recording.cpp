@@ -54,6 +54,21 @@ RecordingOptions checked(const RecordingOptions& options) {
     return options;
 }
 
+std::optional<StandIn> stand_in_of(const RecordingOptions& options, const Part& part, const TaskPath& path) {
+    if (options.disturbances.scene != SceneContent::kOther) return std::nullopt;
+    return stand_in(options.part_name, part, path, options.seed);
+}
+
+Mask none_of(const Mask& mask) {
+    return {mask.width, mask.height, std::vector<std::uint8_t>(mask.value.size(), 0)};
+}
+
+// What the camera has before it, and what of it a segmentation takes for the part.
+struct Sight {
+    RenderedFrame rendered;
+    Mask segmented;
+};
+
 Part with_surface_points(Part part, const Mesh& mesh, Scenario scenario) {
     if (scenario == Scenario::kSweep && part.surface_points_in_object_m.empty()) {
         part.surface_points_in_object_m = surface_points_from_above(mesh);
@@ -83,11 +98,13 @@ void validate(const RecordingOptions& options) {
     validate(options.sensor);
     validate(options.arm);
     validate(options.mask);
+    validate(options.disturbances, options.scenario, frames_of(options), frames_of(options) - num_dropped(options));
 }
 
 struct Recording::Impl {
     Impl(const Mesh& mesh, const Part& part, const RecordingOptions& given)
         : options(checked(given)),
+          extent(part.extent),
           object_id(options.part_name.empty() ? 1 : object_id_of(options.part_name)),
           ids(kept_frames(options)),
           path(task_path(options.scenario, with_surface_points(part, mesh, options.scenario), options.camera,
@@ -96,8 +113,44 @@ struct Recording::Impl {
               measured_motion(path.camera_from_scene, options.arm, options.seed, options.frames_per_second)),
           world(world_of(options.scenario, mesh, part, path, options.camera, options.seed,
                          {options.with_table, options.path.occlusion, options.part_name})),
-          scene(mesh, world),
-          sensor(within_counts(options.sensor, options.depth_scale_mm), options.camera, options.seed) {}
+          other(stand_in_of(options, part, path)),
+          scene(other ? other->mesh : mesh, world),
+          noise(within_counts(options.sensor, options.depth_scale_mm)),
+          sensor(noise, options.camera, options.seed),
+          moved_from(move_frame(options.disturbances, frames_of(options))),
+          nonsense(nonsense_frames(options.disturbances, ids, frames_of(options), options.seed)) {
+        if (!moved_from) return;
+        const Pose scene_from_moved = put_down_elsewhere(scene, part, path, options.camera, *moved_from, options.seed);
+        for (auto frame = static_cast<std::size_t>(*moved_from); frame < path.camera_from_object.size(); ++frame)
+            path.camera_from_object[frame] = path.camera_from_scene[frame] * scene_from_moved;
+    }
+
+    Sight sight_at(int frame) const {
+        const auto place = static_cast<std::size_t>(frame);
+        const Pose &camera_from_object = path.camera_from_object[place],
+                   &camera_from_scene = path.camera_from_scene[place];
+        const auto look = [&](const Pose& pose, bool with_part) {
+            return scene.render(pose, camera_from_scene, options.camera, with_part);
+        };
+        if (options.disturbances.scene == SceneContent::kEmpty)
+            return {look(camera_from_object, false), blob_over(look(camera_from_object, true).instances[0].visible)};
+        const bool there = !looks_away(options.disturbances, frame, frames_of(options));
+        Sight sight{look(other ? camera_from_scene * other->scene_from_object : camera_from_object, there), {}};
+        InstanceView& tracked = sight.rendered.instances.front();
+        sight.segmented = tracked.visible;
+        if (other) {  // of the part itself there is nothing
+            tracked = {none_of(tracked.silhouette), none_of(tracked.visible), {}};
+            tracked.truth.camera_from_object = camera_from_object;
+        }
+        return sight;
+    }
+
+    DepthImage depth_of(const RenderedImage& image, int frame) const {
+        const auto found = std::find(nonsense.begin(), nonsense.end(), frame);
+        if (found == nonsense.end()) return sensor.measure(image, static_cast<std::uint64_t>(frame));
+        const bool flat = (found - nonsense.begin()) % 2 == 1;  // in turns
+        return nonsense_depth(options.camera, noise, flat, options.seed, frame);
+    }
 
     // Of instance `index` of the scene; 0: such as the data set does not have.
     int object_id_at(std::size_t index) const {
@@ -105,13 +158,18 @@ struct Recording::Impl {
     }
 
     RecordingOptions options;
+    ModelExtent extent;
     int object_id;
     std::vector<int> ids;
     TaskPath path;
     std::vector<Pose> camera_from_world;
     World world;
+    std::optional<StandIn> other;  // in the part's place
     Scene scene;
+    SensorNoise noise;
     DepthSensor sensor;
+    std::optional<int> moved_from;  // frame number
+    std::vector<int> nonsense;      // frame numbers
 };
 
 Recording::Recording(const Mesh& mesh, const Part& part, const RecordingOptions& options)
@@ -128,7 +186,7 @@ const RecordingOptions& Recording::options() const {
 }
 
 const ModelExtent& Recording::extent() const {
-    return impl_->scene.part().extent();
+    return impl_->extent;
 }
 
 SimulatedFrame Recording::frame(int index) const {
@@ -139,11 +197,13 @@ SimulatedFrame Recording::frame(int index) const {
     frame.stamp_s = frame.id / options.frames_per_second;
     frame.camera_from_object = impl_->path.camera_from_object[place];
     frame.camera_from_world = impl_->camera_from_world[place];
-    RenderedFrame rendered =
-        impl_->scene.render(frame.camera_from_object, impl_->path.camera_from_scene[place], options.camera);
+    frame.nonsense = std::count(impl_->nonsense.begin(), impl_->nonsense.end(), frame.id) > 0;
+    frame.part_moved = impl_->moved_from && frame.id >= *impl_->moved_from;
+    Sight sight = impl_->sight_at(frame.id);
+    RenderedFrame& rendered = sight.rendered;
     // Through counts and back, as through a file.
     frame.depth = data_set::depth_from_counts(
-        data_set::counts_from_depth(impl_->sensor.measure(rendered.image, place), options.depth_scale_mm),
+        data_set::counts_from_depth(impl_->depth_of(rendered.image, frame.id), options.depth_scale_mm),
         options.depth_scale_mm);
     for (std::size_t i = 0; i < rendered.instances.size(); ++i) {
         data_set::ObjectTruth& truth = rendered.instances[i].truth;
@@ -156,7 +216,7 @@ SimulatedFrame Recording::frame(int index) const {
     InstanceView& tracked = rendered.instances.front();
     frame.visible = std::move(tracked.visible);
     frame.silhouette = std::move(tracked.silhouette);
-    frame.given_mask = with_errors(frame.visible, rendered.image, options.mask);
+    frame.given_mask = with_errors(sight.segmented, rendered.image, options.mask);
     frame.truth = tracked.truth;
     return frame;
 }

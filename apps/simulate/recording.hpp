@@ -10,6 +10,7 @@
 
 #include "apps/data_set/bop_writer.hpp"
 #include "apps/simulate/arm.hpp"
+#include "apps/simulate/disturbance.hpp"
 #include "apps/simulate/mask_errors.hpp"
 #include "apps/simulate/scenario.hpp"
 #include "apps/simulate/sensor_noise.hpp"
@@ -35,6 +36,7 @@ struct RecordingOptions {
     ArmErrors arm;
     MaskErrors mask;                // of given_mask
     double dropped_fraction = 0.0;  // of the frames, never the first
+    Disturbances disturbances;
     bool with_table = true;
     // One of part_names(): its object number goes into the truth, and other built-in parts of the scene are told too.
     // Empty: a part of the user's own, object 1.
@@ -58,13 +60,18 @@ struct SimulatedFrame {
     int id = 0;  // place on the path; dropped frames leave gaps
     double stamp_s = 0.0;
     DepthImage depth;  // measured, in whole counts of the depth scale
-    Mask visible;      // exact: pixels that show the part
+    Mask visible;      // exact: pixels that show the part; of a frame of nonsense: that would
     Mask silhouette;   // exact: pixels whose ray meets the part, also behind others
-    Mask given_mask;   // `visible` with the mask's errors: what an estimator is given
+    // What an estimator is given: `visible` with the mask's errors; without the part, that of what is taken for it.
+    Mask given_mask;
+    bool nonsense = false;    // the depth is not of the scene
+    bool part_moved = false;  // the part lies elsewhere than in the first frame
     Pose camera_from_object;
     Pose camera_from_world;  // as the arm reports it, with its errors
     data_set::ObjectTruth truth;
     std::vector<OtherInstance> others;
+
+    bool shows_part() const { return !nonsense && truth.visible_pixels > 0; }
 };
 
 // Draws the path, the sensor and the arm when it is constructed. Immutable; frame may be called from several threads at

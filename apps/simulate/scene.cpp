@@ -71,6 +71,13 @@ InstanceView enter_instance(const EmbreeScene& part, const Pose& camera_from_obj
     return instance;
 }
 
+InstanceView absent_instance(const Pose& camera_from_object, const PinholeCamera& camera) {
+    InstanceView instance;
+    instance.silhouette = empty_mask(camera);
+    instance.truth.camera_from_object = camera_from_object;
+    return instance;
+}
+
 // A plane needs no tree: in closed form it takes a tenth of the time, and the table is in every pixel.
 void enter_table(const Table& table, const Pose& camera_from_ground, const PinholeCamera& camera, int object,
                  RenderedImage& image) {
@@ -147,15 +154,20 @@ Scene::Scene(const Mesh& part, const World& world)
     if (!world.gripper_in_camera.triangles.empty()) gripper_.emplace(world.gripper_in_camera);
 }
 
-RenderedFrame Scene::render(const Pose& camera_from_object, const Pose& camera_from_scene,
-                            const PinholeCamera& camera) const {
+RenderedFrame Scene::render(const Pose& camera_from_object, const Pose& camera_from_scene, const PinholeCamera& camera,
+                            bool with_part) const {
     RenderedFrame frame;
     frame.image = empty_image(camera);
     int object = kPartIndex;
     const auto add = [&](const EmbreeScene& part, const Pose& pose) {
         frame.instances.push_back(enter_instance(part, pose, camera, object++, frame.image));
     };
-    add(part_, camera_from_object);
+    if (with_part) {
+        add(part_, camera_from_object);
+    } else {
+        frame.instances.push_back(absent_instance(camera_from_object, camera));
+        ++object;
+    }
     for (const Pose& scene_from_copy : scene_from_copies_) add(part_, camera_from_scene * scene_from_copy);
     if (other_) add(*other_, camera_from_scene * scene_from_other_);
     if (table_) enter_table(*table_, camera_from_scene * table_->scene_from_ground, camera, object++, frame.image);

@@ -34,8 +34,9 @@ class Scene {
   public:
     Scene(const Mesh& part, const World& world);
 
-    RenderedFrame render(const Pose& camera_from_object, const Pose& camera_from_scene,
-                         const PinholeCamera& camera) const;
+    // Without the part, what is known of it is that nothing is to be seen.
+    RenderedFrame render(const Pose& camera_from_object, const Pose& camera_from_scene, const PinholeCamera& camera,
+                         bool with_part = true) const;
 
     const EmbreeScene& part() const { return part_; }
 

@@ -20,6 +20,9 @@ std::vector<FrameErrors> two_frames() {
     full.score = 0.9;
     full.time_s = 0.025;
     full.predicted = true;
+    full.verdict = Verdict::kLost;
+    full.shown = Shown::kNonsense;
+    full.part_moved = true;
     full.errors.emplace();
     PoseErrors& errors = *full.errors;
     errors.translation_in_camera_m = {-0.001, 0.002, -0.0025};
@@ -45,6 +48,11 @@ TEST(FrameTable, GivesBackWhatWasWritten) {
     EXPECT_EQ(table_of(read), table);
     const FrameErrors &full = read[0], written = two_frames()[0];
     EXPECT_TRUE(full.predicted);
+    EXPECT_EQ(full.verdict, Verdict::kLost);
+    EXPECT_EQ(full.shown, Shown::kNonsense);
+    EXPECT_TRUE(full.part_moved);
+    EXPECT_FALSE(read[1].verdict || read[1].part_moved);
+    EXPECT_EQ(read[1].shown, Shown::kPart);
     EXPECT_NEAR(full.errors->rotation_rad, written.errors->rotation_rad, 1e-9);
     EXPECT_NEAR(full.errors->translation_in_camera_m.z(), -0.0025, 1e-11);
     EXPECT_DOUBLE_EQ(full.errors->mahalanobis_squared.value(), 6.25);
@@ -54,6 +62,35 @@ TEST(FrameTable, GivesBackWhatWasWritten) {
     EXPECT_DOUBLE_EQ(full.visibility->visible_fraction.value(), 0.75);
     EXPECT_FALSE(read[1].errors || read[1].visibility || read[1].predicted);
     EXPECT_LT(read[1].time_s, 0.0);
+}
+
+TEST(FrameTable, KnowsEveryVerdictAndWhatIsShown) {
+    for (const Verdict verdict : {Verdict::kAccept, Verdict::kContinue, Verdict::kLost}) {
+        for (const Shown shown : {Shown::kPart, Shown::kNothing, Shown::kNonsense}) {
+            FrameErrors frame;
+            frame.verdict = verdict;
+            frame.shown = shown;
+            const auto read = read_table(write_text(new_folder() / "table.csv", table_of({frame})));
+            EXPECT_EQ(read.at(0).verdict, verdict);
+            EXPECT_EQ(read.at(0).shown, shown);
+        }
+    }
+}
+
+TEST(FrameTable, OlderOnesHaveNoVerdicts) {
+    std::string old;
+    const std::string table = table_of(two_frames());
+    for (std::size_t begin = 0, end = 0; begin < table.size(); begin = end + 1) {
+        end = table.find('\n', begin);
+        std::string line = table.substr(begin, end - begin);
+        for (int column = 0; column < 3; ++column) line.resize(line.rfind(','));
+        old += line + "\n";
+    }
+    const std::vector<FrameErrors> read = read_table(write_text(new_folder() / "table.csv", old));
+    ASSERT_EQ(read.size(), 2U);
+    EXPECT_DOUBLE_EQ(read[0].visibility->visible_fraction.value(), 0.75);
+    EXPECT_FALSE(read[0].verdict.has_value());
+    EXPECT_EQ(read[0].shown, Shown::kPart);
 }
 
 TEST(FrameTable, NoFramesAreATableToo) {
@@ -82,6 +119,9 @@ TEST(FrameTable, SaysWhereItIsBroken) {
     expect(with("3,1,", "3.5,1,"), {"line 2", "im_id", "3.5"});
     expect(with("3,1,", "3,2,"), {"line 2", "predicted"});
     expect(with("4,0,,,", "4,0,,7,"), {"line 3", "rotation_error_deg"});
+    expect(with("lost,", "gone,"), {"line 2", "verdict", "gone", "accept, continue, lost"});
+    expect(with("nonsense,", "sense,"), {"line 2", "shown", "part, nothing, nonsense"});
+    expect(with("nonsense,1", "nonsense,2"), {"line 2", "part_moved", "0 or 1"});
     expect(table.substr(0, table.size() - 5), {"line 3", "columns"});
     expect_error([&] { read_table(path.parent_path() / "none.csv"); }, {"none.csv"});
 }

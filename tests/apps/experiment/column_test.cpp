@@ -57,6 +57,59 @@ TEST(Figures, WhatIsNotKnownIsNotZero) {
     EXPECT_EQ(run_of({90, 80, 70}, 0).figures.count("frames_to_arrive"), 0U);
 }
 
+// Letters of verdicts: a accepted and right, f accepted and wrong, c continue, l lost.
+Figures verdict_figures(const std::string& letters, evaluation::Shown shown = evaluation::Shown::kPart) {
+    std::vector<evaluation::FrameErrors> frames;
+    for (const char letter : letters) {
+        evaluation::FrameErrors& frame = frames.emplace_back();
+        frame.shown = shown;
+        frame.errors.emplace();
+        frame.errors->translation_m = letter == 'f' ? 0.003 : 0.001;
+        frame.verdict = letter == 'c' ? Verdict::kContinue : letter == 'l' ? Verdict::kLost : Verdict::kAccept;
+    }
+    return run_result(std::move(frames), {}, 0.2, {}).figures;
+}
+
+TEST(Figures, OfVerdictsTheBurnInCountsToo) {
+    const Figures figures = verdict_figures("fcalla");  // shorter than the burn-in
+    EXPECT_DOUBLE_EQ(figures.at("accepted"), 3.0 / 6.0);
+    EXPECT_DOUBLE_EQ(figures.at("false_accepts"), 1.0 / 6.0);
+    EXPECT_DOUBLE_EQ(figures.at("false_accepts_of_accepts"), 1.0 / 3.0);
+    EXPECT_DOUBLE_EQ(figures.at("lost_verdicts"), 2.0 / 6.0);
+    EXPECT_EQ(figures.at("first_accept"), 3.0);
+    const Figures cautious = verdict_figures("ccc");
+    EXPECT_DOUBLE_EQ(cautious.at("false_accepts"), 0.0);
+    EXPECT_EQ(cautious.count("false_accepts_of_accepts"), 0U);
+    EXPECT_EQ(cautious.count("first_accept"), 0U);
+    EXPECT_EQ(run_of({1, 1}, 0).figures.count("accepted"), 0U);  // nobody gave a verdict
+}
+
+TEST(Figures, WithoutThePartEveryAcceptIsFalseAndNothingElseIsKnown) {
+    const Figures figures = verdict_figures("acac", evaluation::Shown::kNothing);
+    EXPECT_DOUBLE_EQ(figures.at("false_accepts"), 0.5);
+    EXPECT_DOUBLE_EQ(figures.at("false_accepts_of_accepts"), 1.0);
+    for (const char* name : {"arrives", "held", "stays", "first_within_3", "first_accept", "lost", "translation_mean",
+                             "add_auc", "frames_to_arrive"})
+        EXPECT_EQ(figures.count(name), 0U) << name;
+}
+
+TEST(Figures, FirstWithinThreeFrames) {
+    EXPECT_EQ(run_of({50, 50, 4, 50}, 0).figures.at("first_within_3"), 1.0);
+    EXPECT_EQ(run_of({50, 50, 50, 4}, 0).figures.at("first_within_3"), 0.0);
+    EXPECT_EQ(run_of({-1, -1, -1}, 0).figures.at("first_within_3"), 0.0);
+}
+
+TEST(Columns, OfVerdictsPoolRuns) {
+    const std::vector<Figures> runs = {verdict_figures("aaaa"), verdict_figures("cafc"), verdict_figures("llcc")};
+    const auto value = [&](const char* name) { return *entry_of(TableKind::kRun, name, runs).value; };
+    EXPECT_DOUBLE_EQ(value("accepted"), 50.0);
+    EXPECT_NEAR(value("false_accepts"), 25.0 / 3.0, 1e-12);
+    EXPECT_DOUBLE_EQ(value("false_accepts_of_accepts"), 25.0);  // of the two runs with accepts
+    EXPECT_NEAR(value("lost_verdicts"), 50.0 / 3.0, 1e-12);
+    EXPECT_DOUBLE_EQ(value("first_accept"), 2.0);  // the median of 1, 2 and never
+    EXPECT_FALSE(entry_of(TableKind::kRun, "frames_to_refind", runs).value);
+}
+
 TEST(Columns, PoolRuns) {
     const std::vector<Figures> runs = {run_of({1, 1, 1}, 0).figures, run_of({3, 3, 3}, 0).figures,
                                        run_of({50, 50, 50}, 0).figures, run_of({-1, -1, -1}, 0).figures};

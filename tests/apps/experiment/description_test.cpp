@@ -81,6 +81,11 @@ TEST(Description, SaysWhatIsWrongAndWhere) {
     refuses(R"([{"particles": 0}])", "", {"tables/0/rows/0/particles", "1..1000000"});
     refuses(R"([{"control": 1}])", "", {"tables/0/rows/0/control"});
     refuses(R"([{"scenario": "pistol"}])", "", {"tables/0/rows/0/scenario", "did you mean piston"});
+    refuses(R"([{"cad": "miror"}])", "", {"tables/0/rows/0/cad", "did you mean mirrored"});
+    refuses(R"([{"scene": "empy"}])", "", {"tables/0/rows/0/scene", "did you mean empty"});
+    refuses(R"([{"start": "turth"}])", "", {"tables/0/rows/0/start", "did you mean truth"});
+    refuses(R"([{"nonsense_frames": -1}])", "", {"tables/0/rows/0/nonsense_frames", "0..100000"});
+    refuses(R"([{"tolerance_mm": 0}])", "", {"tables/0/rows/0/tolerance_mm"});
     refuses(R"([{"particles": []}])", "", {"tables/0/rows/0/particles", "empty list"});
     refuses("[]", "", {"tables/0/rows", "empty"});
     refuses(R"([{"rounds": 2}, {"rounds": [1, 2]}])", "", {"tables/0/rows", "two rows are the same"});
@@ -105,7 +110,45 @@ TEST(Description, SaysWhatDoesNotGoTogether) {
     refuses(R"({"scenario": "piston", "occlusion": 0.3})", "piston");
     refuses(R"({"model": "no_such.ply"})", "no_such.ply");
     refuses(R"({"sensor": "no_such_sensor"})", "no_such_sensor");
+    for (const char* disturbed :
+         {R"("look_away": 3)", R"("object_moves": true)", R"("scene": "empty")", R"("scene": "other")"}) {
+        for (const char* scenario : {"conveyor", "clutter", "bin"})
+            refuses("{" + std::string(disturbed) + R"(, "scenario": ")" + scenario + "\"}",
+                    "not " + std::string(scenario));
+    }
+    refuses(R"({"scene": "empty", "look_away": 2})", "leave out the scene");
+    refuses(R"({"scene": "other", "object_moves": true})", "leave out the scene");
+    refuses(R"({"scene": "empty", "start": "truth"})", "start truth: there is no true pose");
+    refuses(R"({"frames": 12, "look_away": 5})", "look_away");
+    refuses(R"({"frames": 12, "nonsense_frames": 10})", "nonsense_frames");
+    refuses(R"({"frames": 12, "look_away": 4, "nonsense_frames": 6})", "nonsense_frames");
+    refuses(R"({"frames": 10, "dropped": 0.5, "nonsense_frames": 3})", "nonsense_frames");
+    EXPECT_NO_THROW(described(R"([{"frames": 12, "look_away": 4, "nonsense_frames": 5, "object_moves": true}])"));
+    EXPECT_NO_THROW(described(R"([{"scenario": "bin", "nonsense_frames": 5}])"));
     EXPECT_NO_THROW(described(R"([{"gradient": false, "rounds": 0}])"));
+}
+
+TEST(Description, WhatIsUsualOfALaterSettingGoesUnsaid) {
+    const Settings before = described("[{}]").tables[0].rows[0].settings;
+    for (const char* name :
+         {"scene", "nonsense_frames", "look_away", "object_moves", "cad", "start", "tolerance_mm", "tolerance_deg"})
+        EXPECT_EQ(before.count(name), 0U) << name;
+    const Description said =
+        described(R"([{"scene": "part", "nonsense_frames": 0, "look_away": 0, "object_moves": false,
+        "cad": "true", "start": "none", "tolerance_mm": 2, "tolerance_deg": 1}, {"cad": ["true", "scaled"]}])");
+    EXPECT_EQ(said.tables[0].rows[0].settings, before);
+    EXPECT_EQ(said.tables[0].rows[1].settings, before);
+    EXPECT_EQ(said.tables[0].rows[1].label, "cad true");
+    EXPECT_EQ(setting<std::string>(said.tables[0].rows[2].settings, "cad"), "scaled");
+}
+
+TEST(Description, ToleranceReachesTheEstimatorAndTheFigures) {
+    const Settings settings = described(R"([{"tolerance_mm": 0.5, "tolerance_deg": 3}])").tables[0].rows[0].settings;
+    EXPECT_DOUBLE_EQ(estimator_setup(settings, 1).tolerance.translation_m, 0.0005);
+    EXPECT_NEAR(summary_options(settings).tolerance.rotation_rad, 0.0523598775598, 1e-12);
+    const Tolerance usual = summary_options(described("[{}]").tables[0].rows[0].settings).tolerance;
+    EXPECT_DOUBLE_EQ(usual.translation_m, Tolerance{}.translation_m);
+    EXPECT_DOUBLE_EQ(usual.rotation_rad, Tolerance{}.rotation_rad);
 }
 
 TEST(Description, RunsOfOneRecordingAreOneUnit) {
@@ -136,7 +179,7 @@ TEST(Description, ShardsAreReadStrictly) {
 }
 
 TEST(Description, ShippedOnesAreGood) {
-    for (const char* name : {"small.json", "evaluation.json"}) {
+    for (const char* name : {"small.json", "evaluation.json", "accuracy.json"}) {
         const Description description = read_description(std::filesystem::path("apps/experiments") / name);
         EXPECT_NO_THROW(check(description)) << name;
     }

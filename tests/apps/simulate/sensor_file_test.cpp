@@ -51,6 +51,23 @@ TEST(SensorFile, CloseStereoIsTheDefault) {
     EXPECT_EQ(written(sensor), written(defaults));
 }
 
+TEST(SensorFile, ThoseOfExperimentsDifferFromCloseStereoInOneFigure) {
+    const SensorDescription close = read_sensor("close_stereo");
+    SensorDescription distorted = read_sensor("apps/experiments/sensors/distorted.json");
+    SensorDescription scale_error = read_sensor("apps/experiments/sensors/scale_error.json");
+    EXPECT_EQ(distorted.noise.bias_sigma_m, 0.001);
+    EXPECT_EQ(scale_error.noise.depth_scale_error, 0.004);
+    distorted.noise.bias_sigma_m = close.noise.bias_sigma_m;
+    scale_error.noise.depth_scale_error = close.noise.depth_scale_error;
+    for (SensorDescription* sensor : {&distorted, &scale_error}) {
+        EXPECT_EQ(sensor->sources.size(), close.sources.size());
+        sensor->name = close.name;
+        sensor->description = close.description;
+        sensor->sources = close.sources;
+        EXPECT_EQ(written(*sensor), written(close));
+    }
+}
+
 TEST(SensorFile, EveryFigureOfTheBuiltInOnesHasItsSource) {
     EXPECT_EQ(sensor_names().size(), 6u);
     for (const std::string& name : sensor_names()) {

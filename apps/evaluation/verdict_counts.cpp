@@ -1,0 +1,31 @@
+#include "apps/evaluation/verdict_counts.hpp"
+
+namespace nearpose::evaluation {
+
+bool is_false_accept(const FrameErrors& frame, const Tolerance& tolerance) {
+    if (frame.verdict != Verdict::kAccept) return false;
+    const bool right = frame.shown == Shown::kPart && frame.errors &&
+                       frame.errors->translation_m <= tolerance.translation_m &&
+                       frame.errors->rotation_rad <= tolerance.rotation_rad;
+    return !right;
+}
+
+VerdictCounts count_verdicts(const std::vector<FrameErrors>& frames, const Tolerance& tolerance) {
+    VerdictCounts counts;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        const FrameErrors& frame = frames[i];
+        if (!frame.verdict) continue;
+        ++counts.frames;
+        if (*frame.verdict == Verdict::kLost) ++counts.lost;
+        if (*frame.verdict != Verdict::kAccept) continue;
+        ++counts.accepts;
+        if (is_false_accept(frame, tolerance)) {
+            ++counts.false_accepts;
+        } else if (!counts.first_right_accept) {
+            counts.first_right_accept = static_cast<int>(i);
+        }
+    }
+    return counts;
+}
+
+}  // namespace nearpose::evaluation
