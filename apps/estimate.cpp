@@ -4,14 +4,17 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <numbers>
 
 #include "apps/console.hpp"
+#include "apps/data_set/bop_models.hpp"
 #include "apps/data_set/number_text.hpp"
 #include "apps/data_set/result_csv.hpp"
 #include "apps/estimate_options.hpp"
 #include "apps/estimator_setup.hpp"
+#include "apps/model_symmetries.hpp"
 #include "apps/pose_file.hpp"
 #include "apps/run_folder.hpp"
 #include "core/estimator.hpp"
@@ -23,13 +26,46 @@ struct Tally {
     int frames = 0, unread = 0, seen = 0;
 };
 
-PoseEstimator start_estimator(const EstimateOptions& options, const Mesh& mesh) {
+std::optional<data_set::ModelInfo> declared_info(const ModelOptions& model) {
+    const std::filesystem::path file = model.models / "models_info.json";
+    if (model.models.empty() || !std::filesystem::exists(file)) return std::nullopt;
+    const std::map<int, data_set::ModelInfo> models = data_set::read_models_info(file);
+    const auto found = models.find(model.object);
+    return found == models.end() ? std::nullopt : std::optional(found->second);
+}
+
+// The declared ones, and what the part may be mistaken for besides, which BOP's files do not hold.
+Symmetries with_near(const Symmetries& declared, const Symmetries& found) {
+    Symmetries symmetries = declared;
+    for (const Pose& turn : found.near)
+        if (!contains(declared, turn)) symmetries.near.push_back(turn);
+    return symmetries;
+}
+
+// The user is told which, where there are any.
+Symmetries choose_symmetries(const EstimateOptions& options, const Mesh& mesh, const SharedOptions& shared) {
+    if (options.symmetries == "none") return {};
+    const std::optional<data_set::ModelInfo> info = declared_info(options.model);
+    const Symmetries declared = info ? declared_symmetries(*info) : Symmetries{};
+    const bool take_declared = options.symmetries == "declared" || !declared.empty();
+    const Symmetries found = options.symmetries == "declared" ? Symmetries{} : find_symmetries(mesh);
+    const Symmetries symmetries = take_declared ? with_near(declared, found) : found;
+    if (!symmetries.empty() || !symmetries.near.empty()) {
+        const std::string source = take_declared ? "of models_info.json" : "found from the mesh";
+        print_notice("symmetries " + source + ": " + describe(symmetries), shared.quiet);
+    }
+    return symmetries;
+}
+
+PoseEstimator start_estimator(const EstimateOptions& options, const Mesh& mesh, const SharedOptions& shared) {
     EstimatorSetup setup;
     setup.method = options.method;
     setup.views = options.views;
     setup.particles = options.particles;
     setup.threads = options.threads;
     setup.seed = options.seed;
+    setup.symmetries = choose_symmetries(options, mesh, shared);
+    setup.tolerance = {1e-3 * options.tolerance_mm, options.tolerance_deg * std::numbers::pi / 180.0};
     PoseEstimator made = make_estimator(setup, make_view_generator(setup, mesh));
     if (!options.initial_pose.empty()) {
         made.reset(read_pose_file(options.initial_pose),
@@ -143,7 +179,7 @@ int estimate(const EstimateOptions& given, const SharedOptions& shared) {
     const std::unique_ptr<FrameSource> source = open_source(options);
     check_motion(options, *source);
     const Mesh mesh = load_model(options.model, shared);
-    PoseEstimator estimator = start_estimator(options, mesh);
+    PoseEstimator estimator = start_estimator(options, mesh, shared);
     EstimateOutputs outputs(options.outputs, describe(options, *source), mesh);
     if (!options.outputs.run.empty()) write_run_record(options.outputs.run, options, source->scene_id());
     if (!source->notice().empty()) print_notice(source->notice(), shared.quiet);

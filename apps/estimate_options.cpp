@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/estimator_setup.hpp"
+#include "apps/model_symmetries.hpp"
 
 namespace nearpose::program {
 namespace {
@@ -30,6 +31,11 @@ void add_estimator_options(CLI::App& command, EstimateOptions& options) {
         ->check(CLI::IsMember(view_names()));
     command.add_option("--method", options.method, "default, or paper: the paper's formulas to the letter")
         ->check(CLI::IsMember(method_names()));
+    command
+        .add_option("--symmetries", options.symmetries,
+                    "Of the part: auto (those of models_info.json where it has any, else as the mesh shows them), "
+                    "declared (those of models_info.json alone) or none")
+        ->check(CLI::IsMember(symmetry_choices()));
     command.add_option("--particles", options.particles, "Number of particles")->check(CLI::Range(1, 1000000));
     command.add_option("--threads", options.threads, "Threads; 0: all. Results do not depend on it")
         ->check(CLI::Range(0, 4096));
@@ -39,6 +45,12 @@ void add_estimator_options(CLI::App& command, EstimateOptions& options) {
         ->check(CLI::Range(0.0, 1e6));
     command.add_option("--initial-sigma-deg", options.initial_sigma_deg, "Spread of the start around that pose [deg]")
         ->check(CLI::Range(0.0, 180.0));
+    command
+        .add_option("--tolerance-mm", options.tolerance_mm,
+                    "The verdict is `accept` only where the pose is known to within this (90 %) [mm]")
+        ->check(CLI::Range(1e-6, 1e6));
+    command.add_option("--tolerance-deg", options.tolerance_deg, "And to within this [deg]")
+        ->check(CLI::Range(1e-6, 180.0));
 }
 
 void add_output_options(CLI::App& command, OutputOptions& options) {
@@ -78,6 +90,9 @@ void check(const EstimateOptions& options) {
         throw BadUse("--trajectory-frame world needs the camera motion of a --scene");
     }
     check(options.model);
+    if (options.symmetries == "declared" && options.model.models.empty()) {
+        throw BadUse("--symmetries declared needs --models, whose models_info.json holds them");
+    }
 }
 
 std::unique_ptr<FrameSource> open_source(const EstimateOptions& options) {

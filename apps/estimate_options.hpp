@@ -18,7 +18,7 @@ struct EstimateOptions {
     std::filesystem::path scene, clouds, camera;
     ModelOptions model;
     OutputOptions outputs;
-    std::string views = "raycast", method = "default";
+    std::string views = "raycast", method = "default", symmetries = "auto";
     int particles = EstimatorOptions{}.num_particles;
     int threads = EstimatorOptions{}.num_threads;
     std::uint64_t seed = EstimatorOptions{}.seed;
@@ -27,6 +27,7 @@ struct EstimateOptions {
     double fps = 30.0;
     std::filesystem::path initial_pose;
     double initial_sigma_mm = 10.0, initial_sigma_deg = 5.0;
+    double tolerance_mm = 2.0, tolerance_deg = 1.0;
 };
 
 void add_estimate_options(CLI::App& command, EstimateOptions& options);

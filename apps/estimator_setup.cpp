@@ -1,5 +1,6 @@
 #include "apps/estimator_setup.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "core/check.hpp"
@@ -26,6 +27,11 @@ const std::vector<std::string>& residual_names() {
     return names;
 }
 
+const std::vector<std::string>& parts_of_method() {
+    static const std::vector<std::string> names = {"nothing", "fine_fit", "outline", "pairs", "rivals"};
+    return names;
+}
+
 std::shared_ptr<const ViewGenerator> make_view_generator(const EstimatorSetup& setup, const Mesh& mesh) {
     if (setup.view_samples && setup.views != "raster") {
         throw std::invalid_argument("samples of the surface belong to the views raster, not " + setup.views);
@@ -41,6 +47,22 @@ std::shared_ptr<const ViewGenerator> make_view_generator(const EstimatorSetup& s
     check_option("samples of the surface", options.num_samples, 1, 1e8);
     return std::make_shared<RasterViewGenerator>(mesh, options);
 }
+
+namespace {
+
+void leave_out(const std::string& part, Method& method) {
+    const auto& parts = parts_of_method();
+    if (std::find(parts.begin(), parts.end(), part) == parts.end())
+        throw std::invalid_argument("without '" + part + "': take nothing, fine_fit, outline, pairs or rivals");
+    if (part != "nothing" && method.refinement.modes == 0)
+        throw std::invalid_argument("without " + part + ": only the default method has it");
+    if (part == "fine_fit") method.refinement.fusion = false;
+    if (part == "outline") method.refinement.outline = false;
+    if (part == "pairs") method.start = Start::kSurface;
+    if (part == "rivals") method.refinement.rivals = 0;
+}
+
+}  // namespace
 
 Method make_method(const EstimatorSetup& setup) {
     if (setup.method != "default" && setup.method != "paper") {
@@ -64,6 +86,7 @@ Method make_method(const EstimatorSetup& setup) {
         method.start_step.rounds = 0;
         method.refinement.modes = 0;
     }
+    leave_out(setup.without, method);
     validate(method);
     return method;
 }
@@ -87,6 +110,8 @@ PoseEstimator make_estimator(const EstimatorSetup& setup, std::shared_ptr<const 
     options.num_particles = setup.particles;
     options.num_threads = setup.threads;
     options.seed = setup.seed;
+    options.symmetries = setup.symmetries;
+    options.tolerance = setup.tolerance;
     return PoseEstimator(std::move(views), make_solver(setup), options);
 }
 

@@ -9,6 +9,7 @@
 #include "core/estimator.hpp"
 #include "core/method.hpp"
 #include "core/pose_solver.hpp"
+#include "core/verdict.hpp"
 #include "core/view_generator.hpp"
 #include "raycast/mesh.hpp"
 
@@ -21,6 +22,11 @@ const std::vector<std::string>& view_names();
 const std::vector<std::string>& method_names();
 // "point": point to point; "plane": point to plane.
 const std::vector<std::string>& residual_names();
+
+// "nothing"; "fine_fit": the chosen mode as it was refined, without the sensor's errors and the track; "outline": a
+// face laid into a larger one counts as found; "pairs": starts on single points of the surface and around the centroid;
+// "rivals": no other modes than the swarm's are tried.
+const std::vector<std::string>& parts_of_method();
 
 struct EstimatorSetup {
     std::string method = "default";
@@ -37,7 +43,12 @@ struct EstimatorSetup {
     std::optional<std::string> residual;  // of every solve
     bool gradient = true;  // false: nothing is ever solved, poses stay where diffusion puts them; nor is there a
                            // refinement of modes, which is nothing but solves
+    // One part of the default method left out, for an ablation; "nothing": none. See parts_of_method().
+    std::string without = "nothing";
     std::optional<int> view_samples;  // of the surface; "raster" alone
+
+    Symmetries symmetries;  // of the part
+    Tolerance tolerance;    // of the verdict
 
     // For whoever feeds the estimator.
     bool use_mask = true;

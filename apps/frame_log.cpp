@@ -56,9 +56,18 @@ Json modes_of(const std::vector<Mode>& modes) {
     for (const Mode& mode : modes) {
         list.push_back({{"translation_m", translation_m(mode.camera_from_object)},
                         {"quaternion_xyzw", quaternion_xyzw(mode.camera_from_object)},
-                        {"cost", mode.cost}});
+                        {"cost", mode.cost},
+                        {"weight", mode.weight},
+                        {"covariance", row_major(mode.covariance)}});
     }
     return list;
+}
+
+// Of one observation, largest standard deviation first; a turn counts with the way of a point at half the diameter.
+Json observability_of(const Observability& observability) {
+    Json sigmas = Json::array();
+    for (const double sigma_m : observability.sigmas_m) sigmas.push_back(sigma_m);
+    return {{"sigmas_m", sigmas}, {"weak", observability.weak}};
 }
 
 // Six significant digits: micrometres at a metre, in half the bytes of all digits.
@@ -150,7 +159,10 @@ std::string particles_line(int frame_id, const ParticleSet& particles) {
 }
 
 std::string frame_log_line(const FrameReport& frame, const UpdateResult& result) {
-    Json line = {{"frame", frame.frame_id}, {"stamp_s", frame.stamp_s}, {"status", to_string(result.status)}};
+    Json line = {{"frame", frame.frame_id},
+                 {"stamp_s", frame.stamp_s},
+                 {"status", to_string(result.status)},
+                 {"verdict", to_string(result.verdict)}};
     if (!frame.error.empty()) line["error"] = frame.error;
     if (result.status != UpdateStatus::kNoPose) {
         line["translation_m"] = translation_m(result.camera_from_object);
@@ -158,6 +170,8 @@ std::string frame_log_line(const FrameReport& frame, const UpdateResult& result)
         line["covariance"] = row_major(result.covariance);
         line["covariance_ros"] = row_major(ros_covariance(result.covariance, result.camera_from_object));
         line["score"] = result.score;
+        line["agreement"] = result.agreement;
+        line["observability"] = observability_of(result.observability);
         line["cost"] = result.cost;
     }
     line["effective_sample_size"] = result.effective_sample_size;

@@ -2,12 +2,14 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
 
 #include "apps/console.hpp"
 #include "apps/data_set/number_text.hpp"
 #include "apps/import/import.hpp"
 #include "apps/import/import_model.hpp"
 #include "apps/model_input.hpp"
+#include "apps/model_symmetries.hpp"
 
 namespace nearpose::program {
 namespace {
@@ -20,6 +22,8 @@ struct ImportOptions {
     double units_per_metre = 5000.0;
     double fps = 30.0;
     int id = 1;
+    std::optional<double> symmetry_resolution_mm;
+    bool no_symmetries = false;
 };
 
 void check(const ImportOptions& options) {
@@ -31,6 +35,12 @@ void check(const ImportOptions& options) {
         throw BadUse("--camera is needed: such recordings do not hold the depth stream's intrinsics");
     }
     if (!needs_camera && !options.camera.empty()) throw BadUse("--camera is not used with this input");
+    if (options.model.model.empty() && (options.no_symmetries || options.symmetry_resolution_mm)) {
+        throw BadUse("--no-symmetries and --symmetry-resolution-mm belong to --model");
+    }
+    if (options.no_symmetries && options.symmetry_resolution_mm) {
+        throw BadUse("--no-symmetries and --symmetry-resolution-mm exclude each other");
+    }
 }
 
 // Two folders up camera.json is written, and `estimate` takes the number for the scene's.
@@ -47,12 +57,18 @@ int report(const std::vector<std::string>& warnings, const std::string& summary,
 }
 
 int import_bop_model(const ImportOptions& options, const SharedOptions& shared) {
-    const data_set::ModelImportSummary summary =
-        data_set::import_model({options.model.model, model_unit(options.model), options.id, options.out});
-    return report(
-        summary.warnings,
-        summary.file.string() + ": diameter " + data_set::format_fixed(1e3 * summary.info.diameter_m, 2) + " mm",
-        shared);
+    data_set::ModelImport import;
+    import.model = options.model.model;
+    import.unit = model_unit(options.model);
+    import.object_id = options.id;
+    import.models_folder = options.out;
+    import.find_symmetries = !options.no_symmetries;
+    if (options.symmetry_resolution_mm) import.symmetry_resolution_m = 1e-3 * *options.symmetry_resolution_mm;
+    const data_set::ModelImportSummary summary = data_set::import_model(import);
+    std::string text =
+        summary.file.string() + ": diameter " + data_set::format_fixed(1e3 * summary.info.diameter_m, 2) + " mm";
+    if (import.find_symmetries) text += "; symmetries: " + describe(summary.symmetries);
+    return report(summary.warnings, text, shared);
 }
 
 data_set::ImportSummary import_recording(const ImportOptions& options) {
@@ -93,6 +109,12 @@ void add_import_command(CLI::App& app, const SharedOptions& shared, Run& run) {
         ->check(CLI::Range(1.0, 1e7));
     command->add_option("--fps", options->fps, "Frames per second of Open3D frames")->check(CLI::Range(1e-3, 1e6));
     command->add_option("--id", options->id, "Object number of --model")->check(CLI::Range(0, 999999));
+    command
+        ->add_option("--symmetry-resolution-mm", options->symmetry_resolution_mm,
+                     "Surfaces nearer to each other count as the same when symmetries of --model are looked for "
+                     "[0.5, of large parts 0.002 diameters]")
+        ->check(CLI::Range(1e-3, 1e3));
+    command->add_flag("--no-symmetries", options->no_symmetries, "Write no symmetries into models_info.json");
     command->add_option("--out", options->out, "SET/test/NUMBER of a recording, SET/models of a model")->required();
     command->callback([options, &shared, &run] { run = [options, &shared] { return import_any(*options, shared); }; });
 }

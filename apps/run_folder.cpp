@@ -45,12 +45,15 @@ Json options_json(const EstimateOptions& options) {
             {"fps", options.fps},
             {"views", options.views},
             {"method", options.method},
+            {"symmetries", options.symmetries},
             {"particles", options.particles},
             {"threads", options.threads},
             {"seed", options.seed},
             {"initial-pose", path_json(options.initial_pose)},
             {"initial-sigma-mm", options.initial_sigma_mm},
             {"initial-sigma-deg", options.initial_sigma_deg},
+            {"tolerance-mm", options.tolerance_mm},
+            {"tolerance-deg", options.tolerance_deg},
             {"run", path_json(options.outputs.run)},
             {"out", path_json(options.outputs.out)},
             {"log", path_json(options.outputs.log)},
@@ -111,6 +114,8 @@ EstimateOptions options_of(const JsonValue& json) {
     options.initial_pose = text_of(json, "initial-pose");
     options.initial_sigma_mm = json.at("initial-sigma-mm").number();
     options.initial_sigma_deg = json.at("initial-sigma-deg").number();
+    options.tolerance_mm = json.at("tolerance-mm").number();
+    options.tolerance_deg = json.at("tolerance-deg").number();
     options.outputs = {text_of(json, "run"),        text_of(json, "out"),      text_of(json, "log"),
                        text_of(json, "trajectory"), text_of(json, "pictures"), text_of(json, "trajectory-frame")};
     return options;

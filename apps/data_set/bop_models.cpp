@@ -31,8 +31,8 @@ Pose read_symmetry(const JsonValue& value) {
     return Pose::from_matrix(rotation, Eigen::Vector3d(m[3], m[7], m[11]) * 1e-3);
 }
 
-ContinuousSymmetry read_axis(const JsonValue& value) {
-    ContinuousSymmetry symmetry;
+AxisOfRevolution read_axis(const JsonValue& value) {
+    AxisOfRevolution symmetry;
     const JsonValue axis = value.at("axis");
     symmetry.axis_in_object = vector_of(axis.numbers(3));
     if (!(symmetry.axis_in_object.norm() > 1e-9)) throw axis.error("has no direction");
@@ -88,7 +88,7 @@ std::string symmetries_text(const ModelInfo& info) {
     if (!info.discrete_symmetries.empty()) text += "]";
     separator = "";
     if (!info.continuous_symmetries.empty()) text += ",\n    \"symmetries_continuous\": [";
-    for (const ContinuousSymmetry& symmetry : info.continuous_symmetries) {
+    for (const AxisOfRevolution& symmetry : info.continuous_symmetries) {
         const Eigen::Vector3d& axis = symmetry.axis_in_object;
         const Eigen::Vector3d offset = symmetry.offset_in_object_m * 1e3;
         text += std::string(separator) + "{\"axis\": " + array_text({axis.x(), axis.y(), axis.z()}) +

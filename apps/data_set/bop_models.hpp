@@ -7,20 +7,16 @@
 #include <vector>
 
 #include "core/pose.hpp"
+#include "core/symmetry.hpp"
 
 namespace nearpose::data_set {
-
-struct ContinuousSymmetry {
-    Eigen::Vector3d axis_in_object = Eigen::Vector3d::UnitZ();     // unit
-    Eigen::Vector3d offset_in_object_m = Eigen::Vector3d::Zero();  // a point of the axis
-};
 
 struct ModelInfo {
     double diameter_m = 0.0;  // the largest distance of two vertices
     Eigen::Vector3d box_min_in_object_m = Eigen::Vector3d::Zero();
     Eigen::Vector3d box_max_in_object_m = Eigen::Vector3d::Zero();
     std::vector<Pose> discrete_symmetries;  // object_from_object; the identity is not listed
-    std::vector<ContinuousSymmetry> continuous_symmetries;
+    std::vector<AxisOfRevolution> continuous_symmetries;
 };
 
 // <models>/obj_NNNNNN.ply; throws std::runtime_error that lists which objects there are where this one is missing.

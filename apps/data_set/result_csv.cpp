@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view kHeader = "scene_id,im_id,obj_id,score,R,t,time";
 constexpr std::uintmax_t kMaxCsvBytes = std::uintmax_t{1} << 30;
-constexpr double kRotationTolerance = 1e-2;  // files of other methods hold few digits
+constexpr double kRowRotationTolerance = 1e-2;  // files of other methods hold few digits
 
 std::string row_text(const PoseRow& row) {
     // Drift from unit length is mended; what is no rotation at all is a fault of the caller, which Eigen would turn
@@ -57,7 +57,7 @@ class Line {
         Eigen::Matrix3d R;
         R << r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8];
         const double off = (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-        if (!(off < kRotationTolerance) || R.determinant() < 0.0) throw error("R is not a rotation");
+        if (!(off < kRowRotationTolerance) || R.determinant() < 0.0) throw error("R is not a rotation");
         row.camera_from_object = Pose::from_matrix(R, Eigen::Vector3d(t[0], t[1], t[2]) * 1e-3);
         return row;
     }

@@ -7,6 +7,7 @@
 
 #include "apps/data_set/file_io.hpp"
 #include "apps/data_set/number_text.hpp"
+#include "apps/model_symmetries.hpp"
 
 namespace nearpose::data_set {
 namespace {
@@ -108,6 +109,10 @@ ModelImportSummary import_model(const ModelImport& options) {
     summary.info.diameter_m = diameter_of(loaded.mesh.vertices_in_object);
     summary.info.box_min_in_object_m = extent.box_min_in_object;
     summary.info.box_max_in_object_m = extent.box_max_in_object;
+    if (options.find_symmetries) {
+        summary.symmetries = program::find_symmetries(loaded.mesh, options.symmetry_resolution_m);
+        program::declare(summary.symmetries, summary.info);
+    }
     summary.file = options.models_folder / ("obj_" + zero_padded(options.object_id) + ".ply");
     summary.warnings = repair_warnings(loaded.repair);
     save_ply(loaded.mesh, summary.file, LengthUnit::kMillimetre);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,11 +17,14 @@ struct ModelImport {
     LengthUnit unit = LengthUnit::kMillimetre;
     int object_id = 1;
     std::filesystem::path models_folder;
+    bool find_symmetries = true;
+    std::optional<double> symmetry_resolution_m = std::nullopt;  // see program::find_symmetries
 };
 
 struct ModelImportSummary {
     std::filesystem::path file;
     ModelInfo info;
+    Symmetries symmetries;              // what was found; the exact ones are in `info`
     std::vector<std::string> warnings;  // sentences for the user
 };
 

@@ -23,11 +23,11 @@ constexpr double kTextSize = 11.0, kTitleSize = 13.0;
 constexpr Color kPaper{255, 255, 255}, kInk{40, 44, 52}, kGrid{228, 231, 236}, kFrame{150, 156, 166};
 
 // Told apart by colour-blind readers (Okabe and Ito 2008), those that stand out on white first.
-constexpr std::array kColors = {Color{0, 114, 178},  Color{213, 94, 0},  Color{0, 158, 115}, Color{204, 121, 167},
-                                Color{86, 180, 233}, Color{230, 159, 0}, Color{60, 60, 60},  Color{150, 110, 60}};
+constexpr std::array kCurveColors = {Color{0, 114, 178},  Color{213, 94, 0},  Color{0, 158, 115}, Color{204, 121, 167},
+                                     Color{86, 180, 233}, Color{230, 159, 0}, Color{60, 60, 60},  Color{150, 110, 60}};
 
 Color color_of(std::size_t curve) {
-    return kColors[curve % kColors.size()];
+    return kCurveColors[curve % kCurveColors.size()];
 }
 
 struct Panel {
