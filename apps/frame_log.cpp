@@ -170,7 +170,7 @@ std::string frame_log_line(const FrameReport& frame, const UpdateResult& result)
         line["covariance"] = row_major(result.covariance);
         line["covariance_ros"] = row_major(ros_covariance(result.covariance, result.camera_from_object));
         line["score"] = result.score;
-        line["agreement"] = result.agreement;
+        line["agreement"] = result.pixels.agreement();
         line["observability"] = observability_of(result.observability);
         line["cost"] = result.cost;
     }

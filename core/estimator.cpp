@@ -18,8 +18,6 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-constexpr int kAnchors = 4000;
-
 }  // namespace
 
 void validate(const EstimatorOptions& options) {
@@ -27,6 +25,13 @@ void validate(const EstimatorOptions& options) {
     check_option("num_particles", options.num_particles, 1, 1e6);
     check_option("num_threads", options.num_threads, 0, 4096);
     check_option("min_candidates", options.min_candidates, 1, 1e9);
+    check_option("tolerance.translation_m", options.tolerance.translation_m, 1e-9, 1e6);
+    check_option("tolerance.rotation_rad", options.tolerance.rotation_rad, 1e-9, 3.15);
+    check_option("motion_noise.sigma_rotation_rad", options.motion_noise.sigma_rotation_rad, 0.0, 3.15);
+    check_option("motion_noise.sigma_translation_m", options.motion_noise.sigma_translation_m, 0.0, 1e3);
+    check_option("motion_noise.fraction", options.motion_noise.fraction, 0.0, 10.0);
+    check_option("motion_noise.unknown_rotation_rad", options.motion_noise.unknown_rotation_rad, 0.0, 3.15);
+    check_option("motion_noise.unknown_translation_m", options.motion_noise.unknown_translation_m, 0.0, 1e3);
 }
 
 const char* to_string(UpdateStatus status) {
@@ -47,7 +52,7 @@ PoseEstimator::PoseEstimator(std::shared_ptr<const ViewGenerator> views, std::sh
     if (!views_ || !solver_)
         throw std::invalid_argument("PoseEstimator: a view generator and a pose solver are needed");
     validate(options_);
-    if (options_.method.start != Start::kSphere) anchors_ = find_anchors(*views_, kAnchors);
+    if (options_.method.start == Start::kSurface) anchors_ = find_anchors(*views_);
     if (options_.method.start == Start::kPairs) pairs_.emplace(*views_);
 }
 
@@ -74,7 +79,7 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
     result.verdict = Verdict::kLost;
     if (tracked_) describe_estimate(observation, result);
     constexpr double kConvincing = 0.8;
-    frames_lost_ = result.verdict == Verdict::kLost || result.agreement < kConvincing ? frames_lost_ + 1 : 0;
+    frames_lost_ = result.verdict == Verdict::kLost || result.pixels.agreement() < kConvincing ? frames_lost_ + 1 : 0;
     result.seconds.total = seconds_since(begin);
     return result;
 }
@@ -111,7 +116,7 @@ void PoseEstimator::predict(const std::optional<Pose>& now_from_before, UpdateRe
         if (tracked_) tracked_->camera_from_object = *now_from_before * tracked_->camera_from_object;
         motion = now_from_before;
     }
-    if (track_) move_track(*track_, motion, {}, views_->extent().centre_in_object());
+    if (track_) move_track(*track_, motion, options_.motion_noise, views_->extent().centre_in_object());
     const ModelExtent& extent = views_->extent();
     diffuse(particles_, {method.diffusion_rotation_rad, method.diffusion_diameters * extent.diameter_m()},
             extent.centre_in_object(), options_.seed, step_);
@@ -269,12 +274,11 @@ void PoseEstimator::describe_estimate(const Observation& observation, UpdateResu
     for (Mode& mode : result.modes)
         mode.covariance = about_origin(covariance_at(mode.camera_from_object, context), centre);
     Evidence evidence;
-    evidence.seen = result.status == UpdateStatus::kEstimated;
+    evidence.seen = estimated;
     evidence.pixels = refined_cost(tracked_->camera_from_object, context, refinement);
     evidence.rival_weight = rival_weight_;
     evidence.rivals_tried = rivals_tried_;
     evidence.covariance_about_centre = about_centre(result.covariance, centre);
-    result.agreement = evidence.pixels.agreement();
     result.verdict = judge(evidence, options_.tolerance, options_.symmetries);
     result.pixels = evidence.pixels;
 }

@@ -27,9 +27,10 @@ struct EstimatorOptions {
     int num_particles = 200;
     int num_threads = 0;  // 0: as many as the machine has
     std::uint64_t seed = 1;
-    int min_candidates = 50;  // pixels; fewer show nothing of the object
-    Symmetries symmetries;    // of the part
-    Tolerance tolerance;      // of the verdict
+    int min_candidates = 50;   // pixels; fewer show nothing of the object
+    Symmetries symmetries;     // of the part
+    Tolerance tolerance;       // of the verdict
+    MotionNoise motion_noise;  // of the arm
 };
 
 // Throws std::invalid_argument naming field, value and bound.
@@ -58,7 +59,6 @@ struct UpdateResult {
     std::vector<Mode> modes;                 // refined, best first; the default method's
     Observability observability;             // of this frame alone; the tracked pose may be known better
     PixelCost pixels;                        // how the estimate's rays compare with the depth image
-    double agreement = 0.0;                  // share of the rays that tell anything which agree with the depth, in 0..1
     double effective_sample_size = 0.0;      // 1..number of particles, after weighting
     bool resampled = false;                  // before this update's propagation
     bool mode_replaced = false;              // another mode explains the observation better than the tracked one
@@ -100,7 +100,7 @@ class PoseEstimator {
     std::vector<Mode> near_modes(const std::vector<Mode>& modes) const;
     void bring_to_one_representative(std::vector<Mode>& modes) const;
     bool rivals_due() const;
-    void weigh_rivals(UpdateResult& result, bool tried);
+    void weigh_rivals(const UpdateResult& result, bool tried);
     std::vector<Mode> modes_to_refine(const Observation& observation, UpdateResult& result) const;
     std::vector<Mode> best_rivals(const std::vector<Mode>& leaders, const Observation& observation,
                                   UpdateResult& result) const;
@@ -122,12 +122,12 @@ class PoseEstimator {
     std::shared_ptr<const ViewGenerator> views_;
     std::shared_ptr<const PoseSolver> solver_;
     EstimatorOptions options_;
-    std::vector<SurfaceAnchor> anchors_;
+    std::vector<SurfaceAnchor> anchors_;  // of the start on the surface; that on pairs has its own
     std::optional<AnchorPairs> pairs_;
     std::optional<PatchGrid> patches_;  // while searching
     ParticleSet particles_;
     std::optional<Mode> tracked_;           // the estimate of the last update
-    std::optional<Track> track_;            // the same with its spread and the sensor's errors; the default method's
+    std::optional<Track> track_;            // the same with its spread; the default method's
     std::vector<double> last_costs_;        // of the particles
     std::uint64_t step_ = 0;                // updates so far; addresses the random streams
     Matrix6d observed_ = Matrix6d::Zero();  // covariance of the last observation's own fit, about the centre

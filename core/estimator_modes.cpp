@@ -17,6 +17,7 @@ bool PoseEstimator::take_refined_mode(const Observation& observation, UpdateResu
     const std::vector<Mode> refined = refine_all(modes_to_refine(observation, result), observation, result);
     const Eigen::Vector3d centre = views_->extent().centre_in_object();
     result.modes = distinct_modes(refined, static_cast<int>(refined.size()), centre, mode_distance());
+    set_weights(result.modes);
     result.seconds.refinement = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     const Mode& best = result.modes.front();
     const Mode& tracked = refined.front();
@@ -29,7 +30,7 @@ bool PoseEstimator::take_refined_mode(const Observation& observation, UpdateResu
     if (result.mode_replaced) rivals_tried_ = false;
     tracked_ = chosen;
     if (refinement.fusion) correct_tracked(chosen, result.mode_replaced, observation);
-    weigh_rivals(result, rivals_due());
+    weigh_rivals(result, refinement.rivals > 0 && rivals_due());
     result.score = std::clamp(1.0 - chosen.cost, 0.0, 1.0);
     // The swarm learns of it in place of its least likely member.
     const auto worst = std::max_element(particles_.weights.begin(), particles_.weights.end());
@@ -105,10 +106,8 @@ void PoseEstimator::bring_to_one_representative(std::vector<Mode>& modes) const 
 }
 
 // How sure it is that the tracked mode is the right one: kept until rivals are tried again.
-void PoseEstimator::weigh_rivals(UpdateResult& result, bool tried) {
-    set_weights(result.modes);
-    const bool was_replaced = result.mode_replaced;
-    frames_held_ = was_replaced ? 0 : frames_held_ + 1;
+void PoseEstimator::weigh_rivals(const UpdateResult& result, bool tried) {
+    frames_held_ = result.mode_replaced ? 0 : frames_held_ + 1;
     if (!tried) return;
     rivals_tried_ = true;
     rival_weight_ = 0.0;

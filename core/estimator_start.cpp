@@ -44,15 +44,15 @@ ParticleSet PoseEstimator::start_where_surfaces_meet(const Observation& observat
         for (int round = 0; round < 2; ++round)  // the first shift changes what is seen
             centred.poses[i] = shift_to_seen_surface(centred.poses[i], observation, *views_, coarse);
     });
-    const ParticleSet on_surface =
-        start_on_surface(observation, anchors_, left - on_sphere, options_.seed, step_, on_sphere);
-    for (const ParticleSet* more : {static_cast<const ParticleSet*>(&centred), &on_surface})
-        particles.poses.insert(particles.poses.end(), more->poses.begin(), more->poses.end());
+    const ParticleSet on_surface = start_on_surface(observation, pairs_ ? pairs_->anchors() : anchors_,
+                                                    left - on_sphere, options_.seed, step_, on_sphere);
+    particles.poses.insert(particles.poses.end(), centred.poses.begin(), centred.poses.end());
+    particles.poses.insert(particles.poses.end(), on_surface.poses.begin(), on_surface.poses.end());
     particles.weights.assign(particles.poses.size(), 0.0);
     return particles;
 }
 
-// A pose that what is seen contradicts, or that was not seen for some frames, is searched for anew; the prediction
+// An object that is not seen, or whose pose the image contradicts, is searched for anew; the prediction
 // stays among the modes that are compared.
 bool PoseEstimator::search_again() const {
     const int period = options_.method.refinement.frames_to_search;

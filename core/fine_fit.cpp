@@ -117,12 +117,6 @@ Matrix6d covariance_of(const NormalEquations& equations, const SensorField& fiel
     return 0.5 * (covariance + covariance.transpose());
 }
 
-Eigen::Matrix3d cross_of(const Eigen::Vector3d& v) {
-    Eigen::Matrix3d matrix;
-    matrix << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-    return matrix;
-}
-
 }  // namespace
 
 FineFit fit_finely(const Pose& start, const StepContext& context) {
@@ -157,7 +151,7 @@ Matrix6d covariance_at(const Pose& camera_from_object, const StepContext& contex
 
 Matrix6d about_origin(const Matrix6d& covariance_about_centre, const Eigen::Vector3d& centre_in_object) {
     Matrix6d map = Matrix6d::Identity();  // a turn about the centre moves the origin
-    map.bottomLeftCorner<3, 3>() = cross_of(centre_in_object);
+    map.bottomLeftCorner<3, 3>() = skew(centre_in_object);
     return map * covariance_about_centre * map.transpose();
 }
 

@@ -141,6 +141,7 @@ MovedParticle refine_mode(const Pose& camera_from_object, const StepContext& con
         solve(find_pairs(cast(moved.camera_from_object, context, moved), sharper, unused, moved), sharper, moved);
         step.extra_sigma_diameters *= 0.5;
     }
+    const Timer timer(moved.seconds.likelihood);
     const PixelCost cost = refined_cost(moved.camera_from_object, context, refinement);
     moved.cost = cost.cost;
     moved.support = cost.support();

@@ -56,6 +56,7 @@ void validate(const Refinement& refinement) {
     check_option("refinement.rival_period", refinement.rival_period, 1, 1e6);
     check_option("refinement.rival_modes", refinement.rival_modes, 0, 1000);
     check_option("refinement.min_support", refinement.min_support, 0.0, 1.0);
+    check_option("refinement.frames_to_search", refinement.frames_to_search, 0, 1e6);
     check_option("refinement.frames_to_hold", refinement.frames_to_hold, 0, 1e6);
 }
 
@@ -70,6 +71,7 @@ void validate(const Method& method) {
     check_option("pixel_cost.truncation_sigmas", method.pixel_cost.truncation_sigmas, 0.1, 100.0);
     check_option("pixel_cost.occluded_cost", method.pixel_cost.occluded_cost, 0.0, 1.0);
     check_option("pixel_cost.unexplained_cost", method.pixel_cost.unexplained_cost, 0.0, 1.0);
+    check_option("pixel_cost.outline_cost", method.pixel_cost.outline_cost, 0.0, 100.0);
     check_option("pixel_cost.independent_rays", method.pixel_cost.independent_rays, 0.0, 1e6);
     check_option("diffusion_rotation_rad", method.diffusion_rotation_rad, 0.0, 3.15);
     check_option("diffusion_diameters", method.diffusion_diameters, 0.0, 10.0);

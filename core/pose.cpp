@@ -6,12 +6,6 @@
 namespace nearpose {
 namespace {
 
-Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
-    Eigen::Matrix3d matrix;
-    matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-    return matrix;
-}
-
 // Below this angle [rad] the closed forms of the coefficients lose digits and their series are exact.
 constexpr double kSeriesAngle = 1e-3;
 
@@ -51,6 +45,12 @@ Eigen::Vector3d rotation_log(const Eigen::Quaterniond& q) {
 }
 
 }  // namespace
+
+Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
+    Eigen::Matrix3d matrix;
+    matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+    return matrix;
+}
 
 Pose Pose::from_matrix(const Eigen::Matrix3d& rotation_matrix, const Eigen::Vector3d& translation) {
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(rotation_matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);

@@ -38,6 +38,9 @@ Twist log(const Pose& pose);
 // the paper writes as multiplication of the gradient with its step size.
 Pose interpolate(const Pose& from, const Pose& to, double fraction);
 
+// The matrix of the cross product: skew(v) * w = v x w.
+Eigen::Matrix3d skew(const Eigen::Vector3d& v);
+
 // Angle in [0, pi] of the rotation that takes `a` to `b` [rad]. Computed with atan2: an arccos of a trace loses every
 // digit below 1e-8 rad and hides matrices that are not rotations.
 double angle_between(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/start.hpp"
+
 namespace nearpose {
 namespace {
 
@@ -148,13 +150,8 @@ ViewsAround look_from_all_around(const ViewGenerator& views, int directions, int
     const double focal = 1.9 * pixels_across, middle = 0.5 * (pixels_across - 1);
     around.camera = {pixels_across, pixels_across, focal, focal, middle, middle};
     const ModelExtent& extent = views.extent();
-    for (int k = 0; k < directions; ++k) {  // a Fibonacci sphere
-        const double z = 1.0 - (2.0 * k + 1.0) / directions, angle = k * M_PI * (3.0 - std::sqrt(5.0));
-        const double radius = std::sqrt(1.0 - z * z);
-        const Eigen::Vector3d direction(radius * std::cos(angle), radius * std::sin(angle), z);
-        const auto rotation = Eigen::Quaterniond::FromTwoVectors(direction, -Eigen::Vector3d::UnitZ());
-        around.cameras_from_object.push_back(
-            {rotation, Eigen::Vector3d(0, 0, 2.0 * extent.diameter_m()) - rotation * extent.centre_in_object()});
+    for (const Eigen::Vector3d& direction : directions_all_around(directions)) {
+        around.cameras_from_object.push_back(camera_looking_along(direction, extent));
         around.seen.push_back(look(views, around.cameras_from_object.back(), around.camera));
         for (int pixel = 0; pixel < pixels_across * pixels_across; ++pixel)
             around.hits += around.seen.back().hit(pixel) ? 1 : 0;

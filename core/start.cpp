@@ -41,16 +41,18 @@ std::vector<Eigen::Vector3d> directions_all_around(int count) {
     return directions;
 }
 
-View view_from(const ViewGenerator& views, const Eigen::Vector3d& direction_in_object, int side) {
-    const ModelExtent& extent = views.extent();
-    const double distance_m = 2.0 * extent.diameter_m();
-    const PinholeCamera camera{side, side, 1.5 * side, 1.5 * side, 0.5 * (side - 1), 0.5 * (side - 1)};
+Pose camera_looking_along(const Eigen::Vector3d& direction_in_object, const ModelExtent& extent) {
     const auto rotation = Eigen::Quaterniond::FromTwoVectors(direction_in_object, -Eigen::Vector3d::UnitZ());
-    return views.generate({rotation, Eigen::Vector3d(0, 0, distance_m) - rotation * extent.centre_in_object()}, camera);
+    return {rotation, Eigen::Vector3d(0, 0, 2.0 * extent.diameter_m()) - rotation * extent.centre_in_object()};
 }
 
-std::vector<SurfaceAnchor> find_anchors(const ViewGenerator& views, int count) {
-    constexpr int kDirections = 32, kSide = 64;
+View view_from(const ViewGenerator& views, const Eigen::Vector3d& direction_in_object, int side) {
+    const PinholeCamera camera{side, side, 1.5 * side, 1.5 * side, 0.5 * (side - 1), 0.5 * (side - 1)};
+    return views.generate(camera_looking_along(direction_in_object, views.extent()), camera);
+}
+
+std::vector<SurfaceAnchor> find_anchors(const ViewGenerator& views) {
+    constexpr int kDirections = 32, kSide = 64, kAnchors = 4000;
     std::vector<SurfaceAnchor> all;
     for (const Eigen::Vector3d& direction : directions_all_around(kDirections)) {
         const View view = view_from(views, direction, kSide);
@@ -58,7 +60,7 @@ std::vector<SurfaceAnchor> find_anchors(const ViewGenerator& views, int count) {
             all.push_back({view.points_in_object[p], view.normals_in_object[p]});
     }
     std::vector<SurfaceAnchor> anchors;
-    const std::size_t every = std::max<std::size_t>(1, all.size() / std::max(1, count));
+    const std::size_t every = std::max<std::size_t>(1, all.size() / kAnchors);
     for (std::size_t p = 0; p < all.size(); p += every) anchors.push_back(all[p]);
     return anchors;
 }

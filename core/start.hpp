@@ -29,11 +29,14 @@ struct SurfaceAnchor {
 // Unit vectors, spread evenly.
 std::vector<Eigen::Vector3d> directions_all_around(int count);
 
+// camera_from_object of a camera two diameters from the model's centre in that direction (unit), looking at it.
+Pose camera_looking_along(const Eigen::Vector3d& direction_in_object, const ModelExtent& extent);
+
 // The model as seen from two diameters away, whole, on side x side pixels.
 View view_from(const ViewGenerator& views, const Eigen::Vector3d& direction_in_object, int side);
 
-// Anchors from views of the model from all around, about `count` of them.
-std::vector<SurfaceAnchor> find_anchors(const ViewGenerator& views, int count);
+// Anchors from views of the model from all around, some thousands of them.
+std::vector<SurfaceAnchor> find_anchors(const ViewGenerator& views);
 
 // camera_from_object that lays an anchor on a measured point (in camera coordinates), normal on normal, turned about
 // it.

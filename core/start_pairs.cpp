@@ -14,9 +14,8 @@
 namespace nearpose {
 namespace {
 
-constexpr int kDistanceCells = 10, kAngleCells = 9;  // 15 degrees
+constexpr int kDistanceCells = 10, kAngleCells = 9;  // 20 degrees
 constexpr int kSecondPoints = 8;
-constexpr int kAnchors = 4000;
 constexpr int kMaxPairAnchors = 500;  // their pairs are a quarter of a million
 
 int angle_cell(double cosine) {
@@ -70,7 +69,7 @@ struct Draw {
 
 struct Guess {
     Pose camera_from_object;
-    double score = -1.0;  // share of the model's points towards the camera that agree, less those in front
+    double score = -1.0;  // see score_of; below every score where there is no pose
 };
 
 // A measured point, as likely as it is rare.
@@ -187,7 +186,7 @@ std::vector<AnchorPairs::Screen> find_screens(const ViewGenerator& views) {
 }  // namespace
 
 AnchorPairs::AnchorPairs(const ViewGenerator& views)
-    : anchors_(find_anchors(views, kAnchors)),
+    : anchors_(find_anchors(views)),
       screens_(find_screens(views)),
       diameter_m_(views.extent().diameter_m()),
       cells_(static_cast<std::size_t>(kDistanceCells) * kAngleCells * kAngleCells * kAngleCells) {

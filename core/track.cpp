@@ -7,12 +7,6 @@
 namespace nearpose {
 namespace {
 
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
-    Eigen::Matrix3d matrix;
-    matrix << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-    return matrix;
-}
-
 // The twist about the centre that takes `from` to `to` (inverse of perturb_about).
 Twist twist_about(const Pose& from, const Pose& to, const Eigen::Vector3d& centre_in_object) {
     Twist twist;
@@ -27,7 +21,7 @@ Matrix6d motion_covariance(const Pose& camera_from_object, const Eigen::Vector3d
     const Eigen::Matrix3d object_from_camera = camera_from_object.rotation_matrix().transpose();
     Matrix6d map = Matrix6d::Zero();
     map.topLeftCorner<3, 3>() = object_from_camera;
-    map.bottomLeftCorner<3, 3>() = -object_from_camera * cross_matrix(camera_from_object * centre_in_object);
+    map.bottomLeftCorner<3, 3>() = -object_from_camera * skew(camera_from_object * centre_in_object);
     map.bottomRightCorner<3, 3>() = object_from_camera;
     Twist variances;
     variances << Eigen::Vector3d::Constant(rotation_rad * rotation_rad),

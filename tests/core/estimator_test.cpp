@@ -214,7 +214,7 @@ TEST(Estimator, AcceptsARightPoseAndSaysLostWhereNothingIsSeen) {
     for (int frame = 0; frame < 3; ++frame)
         result = estimator.update(observe_at(frame), frame > 0 ? std::optional(motion_to(frame)) : std::nullopt);
     EXPECT_EQ(result.verdict, Verdict::kAccept);
-    EXPECT_GT(result.agreement, 0.95);
+    EXPECT_GT(result.pixels.agreement(), 0.95);
     EXPECT_TRUE(result.observability.weak.empty());
     EXPECT_EQ(estimator.update(observe_nothing(), motion_to(3)).verdict, Verdict::kLost);
 }

@@ -47,7 +47,7 @@ TEST(Start, AroundAPoseKeepsThePoseItself) {
 }
 
 TEST(Start, AnchorsLieOnTheSurfaceWithOutwardNormalsOnAllSides) {
-    const auto anchors = find_anchors(kPart, 1000);
+    const auto anchors = find_anchors(kPart);
     ASSERT_GT(anchors.size(), 500U);
     std::array<int, 6> sides{};
     for (const SurfaceAnchor& anchor : anchors) {
