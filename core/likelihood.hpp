@@ -33,12 +33,12 @@ struct PixelCostOptions {
 
 // Verdicts of the pixels of one view.
 struct PixelCost {
-    double cost = 1.0;   // mean over the judged pixels, in 0..1
-    double gain = 0.0;   // pixels' cost without the object less that with it, where nothing is segmented
-    int judged = 0;      // pixels with model or candidate, and depth
-    int model_rays = 0;  // of them those with model
-    int agreeing = 0;    // model and depth agree within the truncation
-    bool segmented = false;
+    double cost = 1.0;       // mean over the judged pixels, in 0..1; more where outline_cost is
+    double gain = 0.0;       // pixels' cost without the object less that with it, where nothing is segmented
+    int judged = 0;          // pixels with model or candidate, and depth
+    int model_rays = 0;      // of them those with model
+    int agreeing = 0;        // model and depth agree within the truncation
+    bool segmented = false;  // as the observation
     int missing_model = 0;   // candidate pixels without model
     int model_in_front = 0;  // model before the measured surface: the sensor looked through it
     int model_behind = 0;    // model behind the measured surface

@@ -83,8 +83,8 @@ void add_estimator_rules(std::vector<SettingRule>& rules) {
     const auto add_later = [&](const char* name, SettingType type, double low, double high, Words words, Value unsaid) {
         rules.push_back({TableKind::kRun, SettingUse::kEstimator, name, type, low, high, std::move(words), {}, unsaid});
     };
-    // What the tracker believes of the part, while the truth's mesh stays what it is.
     add_later("without", SettingType::kWord, 0, 0, program::parts_of_method(), "nothing");
+    // What the tracker believes of the part, while the truth's mesh stays what it is.
     add_later("cad", SettingType::kWord, 0, 0, cad_words(), "true");
     // truth: it is started at the true pose before every frame, which is what a fit can reach with this sensor.
     add_later("start", SettingType::kWord, 0, 0, {"none", "truth"}, "none");

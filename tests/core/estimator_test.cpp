@@ -271,6 +271,33 @@ TEST(Estimator, BeforeAFlatFaceTheArmsMotionHoldsWhatIsNotSeen) {
     }
 }
 
+TEST(Estimator, TellsANearlySymmetricPartApartOnlyWhereItsDetailIsInView) {
+    // A plate with one small tower, off its middle: from above a half turn is another pose, from below it is the same.
+    const auto plate = std::make_shared<test::BoxViewGenerator>(
+        std::vector<test::Box>{{{-0.10, -0.07, -0.03}, {0.10, 0.07, 0.03}}, {{0.04, 0.02, 0.03}, {0.08, 0.06, 0.06}}});
+    EstimatorOptions options = small_options(method_default(), 0);
+    options.symmetries.near = {{Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ())), {0, 0, 0}}};
+    for (const bool from_above : {true, false}) {
+        const Pose truth{Eigen::Quaterniond(Eigen::AngleAxisd(from_above ? M_PI - 0.4 : 0.4, Eigen::Vector3d::UnitX())),
+                         {0.0, 0.0, 0.45}};
+        Mask mask;
+        const DepthImage image = test::render(*plate, truth, kCamera, 0.9F, &mask);
+        PoseEstimator estimator(plate, kSolver, options);
+        UpdateResult result;
+        for (int frame = 0; frame < 3; ++frame)
+            result = estimator.update(make_observation(image, kCamera, mask), Pose::identity());
+        const double best = result.modes.front().weight;
+        if (from_above) {
+            EXPECT_EQ(result.verdict, Verdict::kAccept);
+            EXPECT_LT(angle_between(result.camera_from_object.rotation, truth.rotation), 0.02);
+            EXPECT_GT(best, 0.99);
+        } else {
+            EXPECT_EQ(result.verdict, Verdict::kContinue);
+            EXPECT_LT(best, 0.9) << "both turns are told, with their weights";
+        }
+    }
+}
+
 TEST(Estimator, BadOptionsNameTheFieldAndTheBound) {
     const auto message = [](EstimatorOptions options) {
         try {
@@ -287,6 +314,12 @@ TEST(Estimator, BadOptionsNameTheFieldAndTheBound) {
     options = {};
     options.method.step.step_size = std::nan("");
     EXPECT_NE(message(options).find("step.step_size"), std::string::npos);
+    options = {};
+    options.tolerance.translation_m = 0.0;
+    EXPECT_NE(message(options).find("tolerance.translation_m is 0"), std::string::npos);
+    options = {};
+    options.motion_noise.fraction = -1.0;
+    EXPECT_NE(message(options).find("motion_noise.fraction is -1"), std::string::npos);
     EXPECT_THROW(PoseEstimator(nullptr, kSolver, {}), std::invalid_argument);
 }
 

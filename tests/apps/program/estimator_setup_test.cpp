@@ -23,6 +23,26 @@ TEST(EstimatorSetup, LeavesOutWhatIsAsked) {
     EXPECT_TRUE(make_method(untouched).scale_by_overlap);
 }
 
+TEST(EstimatorSetup, LeavesOneNamedPartOut) {
+    const auto without = [](const char* part) {
+        EstimatorSetup setup;
+        setup.without = part;
+        return make_method(setup);
+    };
+    const Method whole = without("nothing");
+    EXPECT_TRUE(whole.refinement.fusion && whole.refinement.outline && whole.start == Start::kPairs);
+    EXPECT_GT(whole.refinement.rivals, 0);
+    EXPECT_FALSE(without("fine_fit").refinement.fusion);
+    EXPECT_FALSE(without("outline").refinement.outline);
+    EXPECT_EQ(without("pairs").start, Start::kSurface);
+    EXPECT_EQ(without("rivals").refinement.rivals, 0);
+    EXPECT_THROW(without("wheels"), std::invalid_argument);
+    EstimatorSetup paper;
+    paper.method = "paper";
+    paper.without = "outline";
+    EXPECT_THROW(make_method(paper), std::invalid_argument) << "it has no such part";
+}
+
 TEST(EstimatorSetup, WithoutGradientNothingIsSolved) {
     for (const char* name : {"paper", "default"}) {
         EstimatorSetup setup;
