@@ -57,16 +57,18 @@ using DeviceHandle = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDe
 using SceneHandle = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
 using GeometryHandle = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, ReleaseGeometry>;
 
+// As single rays of a packet: those of the filter's coarse grids part early in the tree, where Embree's traversal for
+// coherent ones takes 1.4 times as long.
 void intersect(const std::array<int, kPacket>& valid, RTCScene scene, RTCRayHit16& packet) {
 #if NEARPOSE_EMBREE_MAJOR >= 4
     RTCIntersectArguments arguments;
     rtcInitIntersectArguments(&arguments);
-    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    arguments.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
     rtcIntersect16(valid.data(), scene, &packet, &arguments);
 #else
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     rtcIntersect16(valid.data(), scene, &context, &packet);
 #endif
 }
@@ -77,12 +79,18 @@ struct RayBundle {
         const Pose object_from_camera = camera_from_object.inverse();
         object_from_camera_rotation = object_from_camera.rotation_matrix();
         origin_in_object = object_from_camera.translation;
+        for (int u = 0; u < camera.width; ++u) x.push_back(camera.ray(u, 0).x());
+        for (int v = 0; v < camera.height; ++v) y.push_back(camera.ray(0, v).y());
     }
-    Eigen::Vector3d direction(int u, int v) const { return object_from_camera_rotation * camera.ray(u, v); }
+    Eigen::Vector3d direction(int u, int v) const {
+        return object_from_camera_rotation *
+               Eigen::Vector3d(x[static_cast<std::size_t>(u)], y[static_cast<std::size_t>(v)], 1.0);
+    }
 
     PinholeCamera camera;
     Eigen::Matrix3d object_from_camera_rotation;
     Eigen::Vector3d origin_in_object;
+    std::vector<double> x, y;  // camera.ray's, of columns and rows
 };
 
 void require_castable(const Pose& camera_from_object, const PinholeCamera& camera) {
@@ -112,14 +120,17 @@ struct EmbreeScene::Impl {
 
     void attach_triangles();
     void attach_discs();
-    void cast_block(const RayBundle& bundle, int first_u, int first_v, Hit* band) const;
+    void cast_block(const RayBundle& bundle, int first_u, int first_v, RTCRayHit16& packet, Hit* band) const;
     void append(const RayBundle& bundle, int u, int v, const Hit& hit, RayHits& hits) const;
-    // Of the surface that `primitive` is part of: a point [m] and a vector along the normal, object frame.
-    void plane_of(int primitive, const Eigen::Vector3d& direction, Eigen::Vector3d& point,
-                  Eigen::Vector3d& normal) const;
+    void set_normals();
+    Eigen::Vector3d point_on(int primitive) const;  // [m], object frame
 
     // The handles stand after what their callbacks and buffers refer to, so that they go first.
     Mesh mesh;
+    // Of every triangle, or of every disc of an oriented cloud: computing them for each ray takes as long as the ray.
+    // Empty where a disc faces the ray.
+    std::vector<Eigen::Vector3d> normals;  // of any length
+    std::vector<Eigen::Vector3f> unit_normals;
     ModelExtent extent;
     ErrorLog errors;
     DeviceHandle device;
@@ -127,6 +138,7 @@ struct EmbreeScene::Impl {
 };
 
 EmbreeScene::Impl::Impl(const Mesh& source) : mesh(clean(source, "mesh")), extent(extent_of(mesh)) {
+    set_normals();
     // One thread builds and none is started: the callers' threads are the only ones, and the tree is always the same.
     device.reset(rtcNewDevice("threads=1,start_threads=0,set_affinity=0"));
     if (!device) throw_device_error(rtcGetDeviceError(nullptr), "no device");
@@ -195,68 +207,66 @@ void EmbreeScene::Impl::attach_discs() {
     errors.check();
 }
 
-void EmbreeScene::Impl::cast_block(const RayBundle& bundle, int first_u, int first_v, Hit* band) const {
+void EmbreeScene::Impl::set_normals() {
+    for (const Eigen::Vector3f& normal : mesh.vertex_normals_in_object)
+        if (mesh.is_cloud()) normals.push_back(normal.cast<double>());
+    for (const auto& triangle : mesh.triangles) {
+        const auto vertex = [&](int k) {
+            return Eigen::Vector3d(mesh.vertices_in_object[static_cast<std::size_t>(triangle[k])].cast<double>());
+        };
+        normals.push_back((vertex(1) - vertex(0)).cross(vertex(2) - vertex(0)));
+    }
+    for (const Eigen::Vector3d& normal : normals) unit_normals.push_back(normal.normalized().cast<float>());
+}
+
+Eigen::Vector3d EmbreeScene::Impl::point_on(int primitive) const {
+    const auto index = static_cast<std::size_t>(primitive);
+    const std::size_t vertex = mesh.is_cloud() ? index : static_cast<std::size_t>(mesh.triangles[index][0]);
+    return mesh.vertices_in_object[vertex].cast<double>();
+}
+
+void EmbreeScene::Impl::cast_block(const RayBundle& bundle, int first_u, int first_v, RTCRayHit16& packet,
+                                   Hit* band) const {
     alignas(64) std::array<int, kPacket> valid{};
-    alignas(64) RTCRayHit16 packet{};
     for (int k = 0; k < kPacket; ++k) {
         const int u = first_u + k % kBlock;
         const int v = first_v + k / kBlock;
         packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+        packet.ray.tfar[k] = -1.0F;  // a ray that is not to be cast has no length either
         if (u >= bundle.camera.width || v >= bundle.camera.height) continue;
         const Eigen::Vector3d direction = bundle.direction(u, v);
         valid[static_cast<std::size_t>(k)] = -1;
-        packet.ray.org_x[k] = static_cast<float>(bundle.origin_in_object.x());
-        packet.ray.org_y[k] = static_cast<float>(bundle.origin_in_object.y());
-        packet.ray.org_z[k] = static_cast<float>(bundle.origin_in_object.z());
         packet.ray.dir_x[k] = static_cast<float>(direction.x());
         packet.ray.dir_y[k] = static_cast<float>(direction.y());
         packet.ray.dir_z[k] = static_cast<float>(direction.z());
         packet.ray.tnear[k] = 0.0F;
         packet.ray.tfar[k] = std::numeric_limits<float>::infinity();
-        packet.ray.mask[k] = ~0U;
     }
     intersect(valid, scene.get(), packet);
     for (int k = 0; k < kPacket; ++k) {
-        if (packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
+        if (valid[static_cast<std::size_t>(k)] == 0 || packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
         Hit& hit = band[(k / kBlock) * bundle.camera.width + first_u + k % kBlock];
         hit = {static_cast<int>(packet.hit.primID[k]), packet.ray.tfar[k]};
     }
-}
-
-void EmbreeScene::Impl::plane_of(int primitive, const Eigen::Vector3d& direction, Eigen::Vector3d& point,
-                                 Eigen::Vector3d& normal) const {
-    const auto index = static_cast<std::size_t>(primitive);
-    if (mesh.is_cloud()) {
-        point = mesh.vertices_in_object[index].cast<double>();
-        if (mesh.vertex_normals_in_object.empty()) {
-            normal = -direction;  // a plain disc faces the ray
-        } else {
-            normal = mesh.vertex_normals_in_object[index].cast<double>();
-        }
-        return;
-    }
-    const auto& triangle = mesh.triangles[index];
-    point = mesh.vertices_in_object[static_cast<std::size_t>(triangle[0])].cast<double>();
-    const Eigen::Vector3d b = mesh.vertices_in_object[static_cast<std::size_t>(triangle[1])].cast<double>();
-    const Eigen::Vector3d c = mesh.vertices_in_object[static_cast<std::size_t>(triangle[2])].cast<double>();
-    normal = (b - point).cross(c - point);
 }
 
 // Embree's depth is a float whose last bits depend on the instruction set. The depth of the plane that was hit is
 // computed again in double; where it does not agree (a ray within the plane) Embree's stays.
 void EmbreeScene::Impl::append(const RayBundle& bundle, int u, int v, const Hit& hit, RayHits& hits) const {
     const Eigen::Vector3d direction = bundle.direction(u, v);
-    Eigen::Vector3d on_plane, normal;
-    plane_of(hit.primitive, direction, on_plane, normal);
+    const bool faces_ray = normals.empty();
+    const Eigen::Vector3d normal = faces_ray ? Eigen::Vector3d(-direction) : normals[hit.primitive];
     const double slope = normal.dot(direction);
-    const double plane_depth = normal.dot(on_plane - bundle.origin_in_object) / slope;
+    const double plane_depth = normal.dot(point_on(hit.primitive) - bundle.origin_in_object) / slope;
     const bool agrees = std::abs(plane_depth - hit.depth) <= 1e-4 * hit.depth;  // false for NaN
     const double depth = agrees ? plane_depth : static_cast<double>(hit.depth);
     if (!std::isfinite(depth) || !(depth > 0.0)) return;
 
     hits.pixels.push_back(v * bundle.camera.width + u);
     hits.points_in_object.emplace_back((bundle.origin_in_object + depth * direction).cast<float>());
-    hits.normals_in_object.emplace_back(((slope > 0.0 ? -1.0 : 1.0) * normal.normalized()).cast<float>());
+    const Eigen::Vector3f unit =
+        faces_ray ? Eigen::Vector3f(normal.normalized().cast<float>()) : unit_normals[hit.primitive];
+    hits.normals_in_object.emplace_back(slope > 0.0 ? Eigen::Vector3f(-unit) : unit);
     hits.depth_m.push_back(static_cast<float>(depth));
 }
 
@@ -269,15 +279,28 @@ const ModelExtent& EmbreeScene::extent() const {
     return impl_->extent;
 }
 
+void RayHits::reserve(std::size_t count) {
+    pixels.reserve(count);
+    points_in_object.reserve(count);
+    normals_in_object.reserve(count);
+    depth_m.reserve(count);
+}
+
 RayHits EmbreeScene::cast(const Pose& camera_from_object, const PinholeCamera& camera) const {
     require_castable(camera_from_object, camera);
     const RayBundle bundle(camera_from_object, camera);
+    alignas(64) RTCRayHit16 packet{};
+    std::fill_n(packet.ray.org_x, kPacket, static_cast<float>(bundle.origin_in_object.x()));
+    std::fill_n(packet.ray.org_y, kPacket, static_cast<float>(bundle.origin_in_object.y()));
+    std::fill_n(packet.ray.org_z, kPacket, static_cast<float>(bundle.origin_in_object.z()));
+    std::fill_n(packet.ray.mask, kPacket, ~0U);
     RayHits hits;
+    hits.reserve(static_cast<std::size_t>(camera.width) * camera.height);
     std::vector<Hit> band(static_cast<std::size_t>(kBlock * camera.width));
     for (int first_v = 0; first_v < camera.height; first_v += kBlock) {
         std::fill(band.begin(), band.end(), Hit{});
         for (int first_u = 0; first_u < camera.width; first_u += kBlock) {
-            impl_->cast_block(bundle, first_u, first_v, band.data());
+            impl_->cast_block(bundle, first_u, first_v, packet, band.data());
         }
         const int end_v = std::min(first_v + kBlock, camera.height);
         for (int v = first_v; v < end_v; ++v) {

@@ -18,6 +18,7 @@ struct RayHits {
     std::vector<float> depth_m;                      // z in camera coordinates, > 0
 
     std::size_t size() const { return pixels.size(); }
+    void reserve(std::size_t count);
 };
 
 // Immutable after construction; cast may be called from several threads at once. Repeated calls give the same bits, in
