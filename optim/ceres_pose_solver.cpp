@@ -1,7 +1,6 @@
 #include "optim/ceres_pose_solver.hpp"
 
-#include <ceres/problem.h>
-#include <ceres/solver.h>
+#include <ceres/tiny_solver.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +8,6 @@
 #include <string>
 
 #include "optim/internal/registration_cost.hpp"
-#include "optim/internal/se3_manifold.hpp"
 
 namespace nearpose {
 namespace {
@@ -17,35 +15,6 @@ namespace {
 [[noreturn]] void refuse(const std::string& field, double value, const std::string& bound) {
     throw std::invalid_argument("CeresSolverOptions." + field + " is " + std::to_string(value) + "; it must be " +
                                 bound);
-}
-
-ceres::Solver::Options solver_options(const CeresSolverOptions& options, double damped_weight) {
-    ceres::Solver::Options result;
-    result.linear_solver_type =
-        ceres::DENSE_NORMAL_CHOLESKY;  // 7 x 6: half the time of DENSE_QR, and J is a factor already
-    result.max_num_iterations = options.max_iterations;
-    result.function_tolerance = options.function_tolerance;
-    result.gradient_tolerance = 0.0;  // has the unit of a squared weight: no bound holds for every sigma
-    result.parameter_tolerance = 1e-12;
-    result.num_threads = 1;
-    result.logging_type = ceres::SILENT;
-    result.minimizer_progress_to_stdout = false;
-    result.jacobi_scaling = false;
-    // The same damping for all directions. Ceres' usual one follows the diagonal of J^T J, and a plane that is tilted
-    // by a hundredth would be reached by sliding along it a hundred times as far.
-    result.min_lm_diagonal = damped_weight;
-    result.max_lm_diagonal = damped_weight;
-    result.initial_trust_region_radius = 1.0 / options.damping;
-    result.max_trust_region_radius = result.initial_trust_region_radius;
-    return result;
-}
-
-ceres::Problem::Options problem_options() {
-    ceres::Problem::Options result;
-    result.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    result.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    result.disable_all_safety_checks = true;
-    return result;
 }
 
 }  // namespace
@@ -80,26 +49,29 @@ SolveResult CeresPoseSolver::solve(const Correspondences& pairs, const Pose& cam
     const NormalisedPairs normalised(pairs, options_.residual);
     if (!normalised.usable || !is_valid(camera_from_object)) return result;
 
-    RegistrationCost cost(normalised, options_.residual, options_.loss, options_.loss_scale_sigmas);
-    Se3Manifold manifold;
-    Se3Manifold::Ambient parameters = Se3Manifold::ambient_from_pose(normalised.normalised(camera_from_object));
-    // Ceres prints, whatever its log is set to, where it cannot evaluate the start or factorise a step's matrix.
-    const NormalEquations& at_start = cost.sums_at(parameters);
+    RegistrationCost cost(normalised, options_.residual, options_.loss, options_.loss_scale_sigmas,
+                          normalised.normalised(camera_from_object));
+    Twist parameters = Twist::Zero();
+    const NormalEquations at_start = cost.sums_at(parameters);
     if (!is_finite(at_start)) return result;
-    const double damped_weight = std::max(normalised.total_squared_weight, at_start.jtj.trace());
-    ceres::Problem problem(problem_options());
-    problem.AddParameterBlock(parameters.data(), Se3Manifold::kAmbientSize, &manifold);
-    problem.AddResidualBlock(&cost, nullptr, parameters.data());
-    ceres::Solver::Summary summary;
-    ceres::Solve(solver_options(options_, damped_weight), &problem, &summary);
+    // The same damping for all directions. Levenberg and Marquardt's usual one follows the diagonal of J^T J, and a
+    // plane that is tilted by a hundredth would be reached by sliding along it a hundred times as far.
+    cost.set_stay(options_.damping * std::max(normalised.total_squared_weight, at_start.jtj.trace()));
+    ceres::TinySolver<RegistrationCost> solver;
+    solver.options.initial_trust_region_radius = 1e8;
+    solver.options.max_num_iterations = options_.max_iterations + 1;  // its count begins before the first step
+    solver.options.function_tolerance = options_.function_tolerance * at_start.rtr;  // its own is absolute
+    solver.options.gradient_tolerance = 0.0;  // has the unit of a squared weight: no bound holds for every sigma
+    solver.options.cost_threshold = 0.0;
+    solver.options.parameter_tolerance = 1e-12;
+    solver.Solve(cost, &parameters);
 
-    // Ceres' own verdict is not enough: it calls an infinite cost converged.
-    const Pose found = normalised.metric(Se3Manifold::pose_from_ambient(parameters.data()));
-    if (!summary.IsSolutionUsable() || !std::isfinite(summary.initial_cost)) return result;
-    result.initial_cost = result.final_cost = summary.initial_cost;
-    if (!(summary.final_cost <= summary.initial_cost) || !is_valid(found)) return result;
+    const Pose found = normalised.metric(cost.pose_at(parameters.data()));
+    const NormalEquations& at_end = cost.sums_at(parameters);
+    result.initial_cost = result.final_cost = 0.5 * at_start.rtr;
+    if (!is_finite(at_end) || !(at_end.rtr <= at_start.rtr) || !is_valid(found)) return result;
     result.camera_from_object = found;
-    result.final_cost = summary.final_cost;
+    result.final_cost = 0.5 * at_end.rtr;
     result.status = SolveStatus::kConverged;
     return result;
 }

@@ -202,35 +202,68 @@ bool is_finite(const NormalEquations& sums) {
 }
 
 RegistrationCost::RegistrationCost(const NormalisedPairs& pairs, ResidualKind kind, RobustLoss loss,
-                                   double loss_scale_sigmas)
-    : pairs_(pairs), kind_(kind), loss_(loss), loss_scale_sigmas_(loss_scale_sigmas) {
+                                   double loss_scale_sigmas, const Pose& normalised_start)
+    : pairs_(pairs), kind_(kind), loss_(loss), loss_scale_sigmas_(loss_scale_sigmas), start_(normalised_start) {
     latest_parameters_.setConstant(std::numeric_limits<double>::quiet_NaN());  // equal to none
 }
 
-const NormalEquations& RegistrationCost::sums_at(const Se3Manifold::Ambient& parameters) const {
-    if (parameters != latest_parameters_) {
-        const Pose pose = Se3Manifold::pose_from_ambient(parameters.data());
-        latest_ = normal_equations(pairs_, pose, kind_, loss_, loss_scale_sigmas_);
-        latest_parameters_ = parameters;
+Pose RegistrationCost::pose_at(const double* turn_and_shift) const {
+    const Eigen::Map<const Twist> x(turn_and_shift);
+    Twist turn = Twist::Zero();
+    turn.head<3>() = x.head<3>();
+    const Eigen::Quaterniond rotation = (start_.rotation * exp(turn).rotation).normalized();
+    return {rotation, start_.translation + start_.rotation * x.tail<3>()};
+}
+
+const NormalEquations& RegistrationCost::sums_at(const Twist& turn_and_shift) const {
+    if (turn_and_shift != latest_parameters_) {
+        latest_ = normal_equations(pairs_, pose_at(turn_and_shift.data()), kind_, loss_, loss_scale_sigmas_);
+        latest_parameters_ = turn_and_shift;
     }
     return latest_;
 }
 
-bool RegistrationCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
-    const NormalEquations& sums = sums_at(Eigen::Map<const Se3Manifold::Ambient>(parameters[0]));
-    if (!is_finite(sums)) return false;
-    Eigen::Map<Eigen::Matrix<double, 7, 1>> r(residuals);
+namespace {
+
+// The right Jacobian of SO(3): exp(w + d) = exp(w) exp(J d) for small d.
+Eigen::Matrix3d right_jacobian(const Eigen::Vector3d& w) {
+    const double angle_squared = w.squaredNorm();
+    constexpr double kTiny = 1e-8;  // beyond the series' first terms nothing is left
+    const double angle = std::sqrt(angle_squared);
+    const double a = angle_squared < kTiny ? 0.5 : (1.0 - std::cos(angle)) / angle_squared;
+    const double b = angle_squared < kTiny ? 1.0 / 6.0 : (angle - std::sin(angle)) / (angle_squared * angle);
+    return Eigen::Matrix3d::Identity() - a * skew(w) + b * skew(w) * skew(w);
+}
+
+}  // namespace
+
+bool RegistrationCost::operator()(const double* turn_and_shift, double* residuals, double* jacobian) const {
+    const Eigen::Map<const Twist> x(turn_and_shift);
+    Eigen::Map<Eigen::Matrix<double, NUM_RESIDUALS, 1>> r(residuals);
+    const NormalEquations& sums = sums_at(x);
+    if (!is_finite(sums)) {
+        constexpr double kUnreachable = 1e100;
+        r.setConstant(kUnreachable);
+        return false;
+    }
     r.setZero();
-    if (jacobians == nullptr || jacobians[0] == nullptr) {
+    if (jacobian != nullptr) linearised_at_ = x;
+    r.tail<6>() = stay_ * (x - linearised_at_);
+    if (jacobian == nullptr) {
         r[6] = std::sqrt(sums.rtr);
         return true;
     }
-    const Matrix6d rows = factorise(sums, r);
-    // Ceres multiplies by PlusJacobian, and only that product counts: the residual is defined on SE(3) alone, and its
-    // derivative off it is free. As MinusJacobian * PlusJacobian = I, the tangent derivative comes out as it went in.
-    Eigen::Map<Eigen::Matrix<double, 7, 7, Eigen::RowMajor>> ambient_jacobian(jacobians[0]);
-    ambient_jacobian.topRows<6>().noalias() = rows * Se3Manifold::minus_jacobian(parameters[0]);
-    ambient_jacobian.row(6).setZero();
+    Eigen::Map<Eigen::Matrix<double, 7, 1>> of_pairs(residuals);
+    const Matrix6d rows = factorise(sums, of_pairs);
+    // The rows are derivatives by a perturbation on the right, pose * exp(d); the parameters' change moves it by
+    // (J dw, exp(-w) dv).
+    Eigen::Map<Eigen::Matrix<double, NUM_RESIDUALS, 6>> by_parameters(jacobian);
+    by_parameters.setZero();
+    const Eigen::Matrix3d turn_back =
+        (pose_at(turn_and_shift).rotation.conjugate() * start_.rotation).toRotationMatrix();
+    by_parameters.topLeftCorner<6, 3>().noalias() = rows.leftCols<3>() * right_jacobian(x.head<3>());
+    by_parameters.topRightCorner<6, 3>().noalias() = rows.rightCols<3>() * turn_back;
+    by_parameters.bottomRows<6>().diagonal().setConstant(stay_);
     return true;
 }
 
