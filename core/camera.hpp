@@ -26,7 +26,7 @@ struct PinholeCamera {
     int pixel_at(double u, double v) const {
         // The comparison comes before the conversion: an int cannot hold every double.
         if (!(u > -0.5 && v > -0.5 && u < width - 0.5 && v < height - 0.5)) return -1;
-        return static_cast<int>(std::lround(v)) * width + static_cast<int>(std::lround(u));
+        return static_cast<int>(v + 0.5) * width + static_cast<int>(u + 0.5);
     }
 };
 
@@ -38,6 +38,7 @@ struct PixelGrid {
     int stride = 1;
     int width = 0, height = 0;  // [grid pixels]
 
+    bool operator==(const PixelGrid&) const = default;
     int size() const { return width * height; }
     int image_u(int index) const { return first_u + index % width * stride; }
     int image_v(int index) const { return first_v + index / width * stride; }

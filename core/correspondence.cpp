@@ -74,6 +74,7 @@ Correspondences associate_projective(const View& view, const Pose& camera_from_o
     const PinholeCamera& camera = observation.camera();
     const Eigen::Matrix3f rotation = camera_from_object.rotation_matrix().cast<float>();
     const Eigen::Vector3f translation = camera_from_object.translation.cast<float>();
+    const double extra_m2 = extra_sigma_m * extra_sigma_m;
     Correspondences pairs;
     reserve(pairs, view.size());
     for (std::size_t k = 0; k < view.size(); ++k) {
@@ -85,9 +86,9 @@ Correspondences associate_projective(const View& view, const Pose& camera_from_o
         const float depth_m = observation.depth_m()[pixel];
         if (std::abs(depth_m - point_in_camera.z()) > max_distance_m) continue;
         const double normal_z = rotation.row(2).dot(view.normals_in_object[k]);
-        const double sigma_m =
-            observation.sensor().sigma_along_normal_m(observation.sigma_m(depth_m), depth_m, normal_z, camera.fx);
-        append(pairs, view, k, observation.point_at(pixel).cast<float>(), std::hypot(sigma_m, extra_sigma_m));
+        const double variance_m2 =
+            observation.sensor().variance_along_normal_m2(observation.sigma_m(depth_m), depth_m, normal_z, camera.fx);
+        append(pairs, view, k, observation.point_at(pixel).cast<float>(), std::sqrt(variance_m2 + extra_m2));
     }
     return pairs;
 }

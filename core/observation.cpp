@@ -19,8 +19,9 @@ void check_size(const std::string& what, int width, int height, std::size_t coun
                                 std::to_string(camera.height));
 }
 
-bool in_range(double depth_m, const SensorModel& sensor) {
-    return depth_m >= sensor.min_range_m && depth_m <= sensor.max_range_m;  // false for NaN
+bool in_range(float depth_m, const SensorModel& sensor) {
+    const auto least_m = static_cast<float>(sensor.min_range_m), most_m = static_cast<float>(sensor.max_range_m);
+    return depth_m >= least_m && depth_m <= most_m;  // false for NaN
 }
 
 // Of the cloud's own sampling: the coarsest stride at which neighbouring pixels of its projection are all but filled.
@@ -66,15 +67,33 @@ Eigen::Vector3f Observation::normal_at(int pixel, int reach) const {
     return (towards_camera / length).cast<float>();
 }
 
+// Whole rows at a time: this runs over every pixel of every frame.
+void Observation::take_pixels(const std::vector<float>& depth_m, const std::optional<Mask>& mask) {
+    constexpr auto kCandidate = static_cast<std::uint8_t>(PixelState::kCandidate);
+    constexpr auto kBackground = static_cast<std::uint8_t>(PixelState::kBackground);
+    static_assert(static_cast<int>(PixelState::kNoDepth) == 0);
+    const std::size_t count = depth_m.size();
+    depth_m_.resize(count);
+    std::vector<std::uint8_t> states(count, kCandidate);
+    if (mask) {
+        for (std::size_t p = 0; p < count; ++p) states[p] = mask->value[p] != 0 ? kCandidate : kBackground;
+    }
+    for (std::size_t p = 0; p < count; ++p) depth_m_[p] = in_range(depth_m[p], sensor_) ? depth_m[p] : 0.0F;
+    states_.resize(count);
+    for (std::size_t p = 0; p < count; ++p) states_[p] = static_cast<PixelState>(depth_m_[p] > 0.0F ? states[p] : 0);
+}
+
 void Observation::find_candidates() {
     PixelBox box{camera_.width, camera_.height, 0, 0};
-    for (int v = 0, pixel = 0; v < camera_.height; ++v) {
-        for (int u = 0; u < camera_.width; ++u, ++pixel) {
-            if (states_[pixel] != PixelState::kCandidate) continue;
-            ++num_candidates_;
-            box = {std::min(box.first_u, u), std::min(box.first_v, v), std::max(box.last_u, u + 1),
-                   std::max(box.last_v, v + 1)};
-        }
+    for (int v = 0; v < camera_.height; ++v) {
+        const auto row = states_.begin() + static_cast<std::ptrdiff_t>(v) * camera_.width, end = row + camera_.width;
+        const auto count = static_cast<int>(std::count(row, end, PixelState::kCandidate));
+        if (count == 0) continue;
+        num_candidates_ += count;
+        int first = 0, last = camera_.width;
+        while (row[first] != PixelState::kCandidate) ++first;
+        while (row[last - 1] != PixelState::kCandidate) --last;
+        box = {std::min(box.first_u, first), std::min(box.first_v, v), std::max(box.last_u, last), v + 1};
     }
     candidate_box_ = num_candidates_ > 0 ? box : PixelBox{};
 }
@@ -92,7 +111,7 @@ void Observation::sample_cloud(int max_points) {
     }
 }
 
-void Observation::index_cloud() {
+void Observation::measure_cloud() {
     if (points_in_camera_.empty()) return;
     double distances_m = 0.0;
     for (const Eigen::Vector3f& point : points_in_camera_) {
@@ -102,7 +121,11 @@ void Observation::index_cloud() {
     const double count = static_cast<double>(points_in_camera_.size());
     centroid_in_camera_ /= count;
     mean_distance_m_ = distances_m / count;
-    index_ = PointIndex(points_in_camera_);
+}
+
+const PointIndex& Observation::index() const {
+    std::call_once(index_->once, [this] { index_->index.emplace(points_in_camera_); });
+    return *index_->index;
 }
 
 // A plane's inverse depth is linear over the image, so that its second difference is noise alone: of variance 6 / z^4
@@ -161,17 +184,10 @@ Observation make_observation(const DepthImage& depth, const PinholeCamera& camer
     observation.camera_ = camera;
     observation.sensor_ = options.sensor;
     observation.segmented_ = mask.has_value();
-    observation.depth_m_.assign(depth.depth_m.size(), 0.0F);
-    observation.states_.assign(depth.depth_m.size(), PixelState::kNoDepth);
-    for (std::size_t pixel = 0; pixel < depth.depth_m.size(); ++pixel) {
-        if (!in_range(depth.depth_m[pixel], options.sensor)) continue;
-        observation.depth_m_[pixel] = depth.depth_m[pixel];
-        const bool object = !mask || mask->value[pixel] != 0;
-        observation.states_[pixel] = object ? PixelState::kCandidate : PixelState::kBackground;
-    }
+    observation.take_pixels(depth.depth_m, mask);
     observation.find_candidates();
     observation.sample_cloud(options.max_points);
-    observation.index_cloud();
+    observation.measure_cloud();
     observation.measure_noise();
     return observation;
 }
@@ -203,7 +219,7 @@ Observation make_observation(const std::vector<Eigen::Vector3f>& points_in_camer
     }
     observation.find_candidates();
     observation.sample_cloud(options.max_points);
-    observation.index_cloud();
+    observation.measure_cloud();
     return observation;
 }
 

@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -25,7 +27,7 @@ struct ObservationOptions {
     int max_points = 3000;  // of the cloud that nearest neighbours are searched in
 };
 
-// Immutable. Built by make_observation.
+// Immutable; may be read by several threads at once. Built by make_observation.
 class Observation {
   public:
     const PinholeCamera& camera() const { return camera_; }
@@ -49,10 +51,11 @@ class Observation {
     double sigma_m(double depth_m) const { return noise_factor_ * sensor_.sigma_m(depth_m); }
 
     // An even subset of the candidates as a cloud, with unit normals towards the camera (zero where the neighbourhood
-    // gives none), and the index over it.
+    // gives none).
     const std::vector<Eigen::Vector3f>& points_in_camera() const { return points_in_camera_; }
     const std::vector<Eigen::Vector3f>& normals_in_camera() const { return normals_in_camera_; }
-    const PointIndex& index() const { return index_; }
+    // Over that cloud. Built when first asked for: projective association needs none.
+    const PointIndex& index() const;
 
     Eigen::Vector3d centroid_in_camera() const { return centroid_in_camera_; }  // of that cloud [m]
     double mean_distance_m() const { return mean_distance_m_; }  // of that cloud from the camera [m]; 0 if empty
@@ -71,10 +74,11 @@ class Observation {
                                         const ObservationOptions&);
     friend Observation make_observation(const std::vector<Eigen::Vector3f>&, const PinholeCamera&,
                                         const ObservationOptions&);
-    Observation() : index_({}) {}
+    Observation() = default;
+    void take_pixels(const std::vector<float>& depth_m, const std::optional<Mask>& mask);
     void find_candidates();
     void sample_cloud(int max_points);
-    void index_cloud();
+    void measure_cloud();
     void measure_noise();
 
     PinholeCamera camera_;
@@ -89,7 +93,11 @@ class Observation {
     std::vector<Eigen::Vector3f> normals_in_camera_;
     Eigen::Vector3d centroid_in_camera_ = Eigen::Vector3d::Zero();
     double mean_distance_m_ = 0.0;
-    PointIndex index_;
+    struct LazyIndex {
+        std::once_flag once;
+        std::optional<PointIndex> index;
+    };
+    std::shared_ptr<LazyIndex> index_ = std::make_shared<LazyIndex>();
 };
 
 // The measurements at the pixels of a grid, gathered once for all particles.

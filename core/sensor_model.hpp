@@ -1,8 +1,6 @@
 // The depth sensor's noise, as the likelihood and the covariance use it.
 #pragma once
 
-#include <cmath>
-
 namespace nearpose {
 
 // Axial noise of a structured-light or stereo sensor grows with the square of the distance (the disparity's error is
@@ -27,13 +25,14 @@ struct SensorModel {
     // Standard deviation of one pixel's depth along the optical axis, for a surface seen face on [m].
     double sigma_m(double depth_m) const { return sigma_floor_m + sigma_per_square_metre * depth_m * depth_m; }
 
-    // Of the distance between a measured point and the surface's plane, along its normal: the axial noise counts with
-    // the cosine of its angle to the normal, the lateral one with the sine [m]. `axial_m` is sigma_m(depth_m) times
-    // what the image at hand is noisier; `normal_z` the normal's component along the optical axis.
-    double sigma_along_normal_m(double axial_m, double depth_m, double normal_z, double focal_pixels) const {
+    // Variance of the distance between a measured point and the surface's plane, along its normal: the axial noise
+    // counts with the cosine of its angle to the normal, the lateral one with the sine [m^2]. `axial_m` is
+    // sigma_m(depth_m) times what the image at hand is noisier; `normal_z` the normal's component along the optical
+    // axis.
+    double variance_along_normal_m2(double axial_m, double depth_m, double normal_z, double focal_pixels) const {
         const double lateral_m = lateral_sigma_pixels * depth_m / focal_pixels;
         const double squared_cosine = normal_z * normal_z;
-        return std::sqrt(axial_m * axial_m * squared_cosine + lateral_m * lateral_m * (1.0 - squared_cosine));
+        return axial_m * axial_m * squared_cosine + lateral_m * lateral_m * (1.0 - squared_cosine);
     }
 };
 
