@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/sensor_field.hpp"
@@ -16,9 +17,40 @@ constexpr double kHuberSigmas = 2.0;  // beyond it a residual pulls with constan
 // The normal equations of one round over (twist about the centre, unknowns of the field), at the pose and at zero
 // errors of the sensor.
 struct NormalEquations {
-    Eigen::MatrixXd information;
-    Eigen::VectorXd gradient;
+    explicit NormalEquations(Eigen::Index unknowns)
+        : sums(Eigen::MatrixXd::Zero(6 + unknowns + 1, 6 + unknowns + 1)), unknowns(unknowns) {}
+    auto information() const { return sums.topLeftCorner(6 + unknowns, 6 + unknowns); }
+    auto gradient() const { return sums.col(6 + unknowns).head(6 + unknowns); }
+
+    Eigen::MatrixXd sums;  // of weight * row * row^T, row = (derivatives, residual)
+    Eigen::Index unknowns;
     int pairs = 0;
+};
+
+// Neighbouring rays share the field's nodes: their rows are summed up as small matrices first.
+class CellSum {
+  public:
+    static constexpr int kSize = 6 + 5 + 1;  // the pose, the nodes around and the scale, the residual
+    using Row = Eigen::Matrix<double, kSize, 1>;
+
+    void add(const SensorField::Row& place, const Row& row, double weight, NormalEquations& equations) {
+        if (place.unknowns != unknowns_) flush(equations);
+        unknowns_ = place.unknowns;
+        const Row weighted = weight * row;
+        sum_.noalias() += weighted * row.transpose();
+    }
+    void flush(NormalEquations& equations) {
+        std::array<Eigen::Index, kSize> index{};
+        for (int i = 0; i < kSize; ++i)
+            index[i] = i < 6 ? i : 6 + (i < kSize - 1 ? unknowns_[i - 6] : equations.unknowns);
+        for (int j = 0; j < kSize; ++j)
+            for (int i = 0; i < kSize; ++i) equations.sums(index[i], index[j]) += sum_(i, j);
+        sum_.setZero();
+    }
+
+  private:
+    Eigen::Matrix<double, kSize, kSize> sum_ = Eigen::Matrix<double, kSize, kSize>::Zero();
+    decltype(SensorField::Row::unknowns) unknowns_{};
 };
 
 struct Linearisation {
@@ -34,56 +66,118 @@ double rays_per_fine_error(const SensorModel& sensor, int stride) {
     return side * side;
 }
 
-NormalEquations linearise(const Linearisation& at, const SensorField& field, const StepContext& context) {
+// The surface measured around a ray: the mean over pixels of its part of the grid that lie on the ray's face.
+struct MeasuredAround {
+    double residual_m = 0.0;  // along the normal
+    int count = 0;
+};
+
+// Whether the rays beside one meet the same face.
+struct FaceGoesOn {
+    bool left = false, right = false, up = false, down = false;
+};
+
+FaceGoesOn face_goes_on(const View& view, const std::vector<int>& hit_at, std::size_t k, const PixelGrid& grid) {
+    const int index = view.pixels[k], u = index % grid.width, v = index / grid.width;
+    const auto same = [&](int other) {
+        const int hit = hit_at[other];
+        if (hit < 0) return false;
+        const Eigen::Vector3f between = view.points_in_object[hit] - view.points_in_object[k];
+        constexpr float kSine = 0.05F;
+        return std::abs(view.normals_in_object[k].dot(between)) < kSine * between.norm() &&
+               std::abs(view.normals_in_object[hit].dot(between)) < kSine * between.norm();
+    };
+    return {u > 0 && same(index - 1), u + 1 < grid.width && same(index + 1), v > 0 && same(index - grid.width),
+            v + 1 < grid.height && same(index + grid.width)};
+}
+
+// A plane's inverse depth is affine over the image, so that one cast ray speaks for the pixels around: the noise of
+// many is averaged for the price of one. Where the face ends or bends the gate leaves pixels out.
+struct FaceInImage {
+    double inverse_depth, along_u, along_v;  // [1/m], and per pixel
+    double slope_by_inverse;                 // normal . (point - camera): the slope of a ray is this times 1 / depth
+
+    MeasuredAround compare(const Observation& observation, int u, int v, int reach, const FaceGoesOn& goes_on,
+                           double expected_m, double gate_m) const {
+        const PinholeCamera& camera = observation.camera();
+        MeasuredAround sum;
+        const int step = std::max(1, reach / 2);
+        for (int dv = goes_on.up ? -reach : 0; dv <= (goes_on.down ? reach : 0); dv += step) {
+            for (int du = goes_on.left ? -reach : 0; du <= (goes_on.right ? reach : 0); du += step) {
+                const int other_u = u + du, other_v = v + dv;
+                if (other_u < 0 || other_v < 0 || other_u >= camera.width || other_v >= camera.height) continue;
+                const int pixel = other_v * camera.width + other_u;
+                if (observation.states()[pixel] != PixelState::kCandidate) continue;
+                // (measured - model) * slope, with slope = slope_by_inverse / model
+                const double inverse = inverse_depth + along_u * du + along_v * dv;
+                const double residual_m = (observation.depth_m()[pixel] * inverse - 1.0) * slope_by_inverse;
+                if (!(std::abs(residual_m - expected_m) <= gate_m)) continue;
+                sum.residual_m += residual_m;
+                ++sum.count;
+            }
+        }
+        if (sum.count > 0) sum.residual_m /= sum.count;
+        return sum;
+    }
+};
+
+// The rays keep the faces that they met in `view`, which was cast at a pose near by.
+NormalEquations linearise(const Linearisation& at, const View& view, const SensorField& field,
+                          const StepContext& context) {
     const ObservedGrid& observed = context.observed;
     const SensorModel& sensor = context.observation.sensor();
     const Eigen::Vector3d centre = context.views.extent().centre_in_object();
     const Eigen::Matrix3d rotation = at.camera_from_object.rotation_matrix();
-    const View view = context.views.generate(at.camera_from_object, observed.camera);
+    const Eigen::Matrix3d object_from_camera = rotation.transpose();
+    const Eigen::Vector3d camera_in_object = -(object_from_camera * at.camera_from_object.translation);
     const double fine_m2 = sensor.systematic_fine_sigma_m * sensor.systematic_fine_sigma_m;
     const double shared = rays_per_fine_error(sensor, observed.grid.stride);
     const double field_m2 = sensor.systematic_sigma_m * sensor.systematic_sigma_m;
-    const int unknowns = field.num_unknowns();
-    NormalEquations sum{Eigen::MatrixXd::Zero(6 + unknowns, 6 + unknowns), Eigen::VectorXd::Zero(6 + unknowns), 0};
+    NormalEquations equations(field.num_unknowns());
+    CellSum cell;
+    const PinholeCamera& camera = context.observation.camera();
+    const int reach = observed.grid.stride * 2 / 5;
+    std::vector<int> hit_at(static_cast<std::size_t>(observed.grid.size()), -1);
+    for (std::size_t k = 0; k < view.size(); ++k) hit_at[view.pixels[k]] = static_cast<int>(k);
     for (std::size_t k = 0; k < view.size(); ++k) {
         const int index = view.pixels[k];
         if (observed.states[index] != PixelState::kCandidate) continue;
-        const Eigen::Vector3d point = view.points_in_object[k].cast<double>();
         const Eigen::Vector3d normal = view.normals_in_object[k].cast<double>();
-        const double model_m = rotation.row(2).dot(point) + at.camera_from_object.translation.z();
+        const Eigen::Vector3d normal_in_camera = rotation * normal;
+        const int u = observed.grid.image_u(index), v = observed.grid.image_v(index);
+        const double slope = normal_in_camera.dot(camera.ray(u, v));  // metres along the normal per metre of depth
+        const double offset_m = normal.dot(view.points_in_object[k].cast<double>() - camera_in_object);
+        const double model_m = offset_m / slope;
+        if (!(model_m > 0.0 && slope < 0.0)) continue;  // the face is seen from behind by now, or on edge
         const double measured_m = observed.depth_m[index];
-        const Eigen::Vector3d ray = observed.camera.ray(index % observed.grid.width, index / observed.grid.width);
-        const double slope = normal.dot(rotation.transpose() * ray);  // metres along the normal per metre of depth
-        const double residual_m = (measured_m - model_m) * slope;
-        const SensorField::Row row =
-            field.row_at(observed.grid.image_u(index), observed.grid.image_v(index), measured_m);
+        const SensorField::Row place = field.row_at(u, v, measured_m);
         double known_m = 0.0;
-        for (int i = 0; i < 5; ++i) known_m += row.factors[i] * at.errors[row.unknowns[i]];
-        const double sensor_m = sensor.sigma_along_normal_m(
-            observed.sigma_m[index], measured_m, rotation.row(2).dot(normal), context.observation.camera().fx);
+        for (int i = 0; i < 5; ++i) known_m += place.factors[i] * at.errors[place.unknowns[i]];
         const double squared_slope = slope * slope;
-        const double sigma_m =
-            std::sqrt(sensor_m * sensor_m + fine_m2 * squared_slope + at.extra_sigma_m * at.extra_sigma_m);
-        const double off_m = std::abs(residual_m - slope * known_m);
-        if (off_m > kGateSigmas * std::sqrt(sigma_m * sigma_m + field_m2 * squared_slope)) continue;
-        const double robust = std::min(1.0, kHuberSigmas * sigma_m / std::max(off_m, 1e-12));
-        const double weight = robust / (sigma_m * sigma_m + (shared - 1.0) * fine_m2 * squared_slope);
-        Twist jacobian;
-        jacobian << (point - centre).cross(normal), normal;
-        sum.information.topLeftCorner<6, 6>().noalias() += weight * jacobian * jacobian.transpose();
-        sum.gradient.head<6>() += weight * residual_m * jacobian;
-        for (int i = 0; i < 5; ++i) {
-            const double factor = weight * slope * row.factors[i];
-            const int unknown = 6 + row.unknowns[i];
-            sum.information.block<6, 1>(0, unknown) += factor * jacobian;
-            sum.gradient[unknown] += factor * residual_m;
-            for (int j = 0; j < 5; ++j)
-                sum.information(unknown, 6 + row.unknowns[j]) += factor * slope * row.factors[j];
-        }
-        ++sum.pairs;
+        const double noise_m2 =
+            sensor.variance_along_normal_m2(observed.sigma_m[index], measured_m, normal_in_camera.z(), camera.fx);
+        const double extra_m2 = fine_m2 * squared_slope + at.extra_sigma_m * at.extra_sigma_m;
+        const double gate_m = kGateSigmas * std::sqrt(noise_m2 + extra_m2 + field_m2 * squared_slope);
+        const FaceInImage face{1.0 / model_m, normal_in_camera.x() / (camera.fx * offset_m),
+                               normal_in_camera.y() / (camera.fy * offset_m), offset_m};
+        const MeasuredAround measured = face.compare(
+            context.observation, u, v, reach, face_goes_on(view, hit_at, k, observed.grid), slope * known_m, gate_m);
+        if (measured.count == 0) continue;
+        const double sigma_m2 = noise_m2 / measured.count + extra_m2;
+        const double off_m = std::abs(measured.residual_m - slope * known_m);
+        const double robust = std::min(1.0, kHuberSigmas * std::sqrt(sigma_m2) / std::max(off_m, 1e-12));
+        CellSum::Row row;
+        row << (camera_in_object + model_m * (object_from_camera * camera.ray(u, v)) - centre).cross(normal), normal,
+            slope * Eigen::Map<const Eigen::Matrix<double, 5, 1>>(place.factors.data()), measured.residual_m;
+        cell.add(place, row, robust / (sigma_m2 + (shared - 1.0) * fine_m2 * squared_slope), equations);
+        ++equations.pairs;
     }
-    sum.information.bottomLeftCorner(unknowns, 6) = sum.information.topRightCorner(6, unknowns).transpose();
-    return sum;
+    cell.flush(equations);
+    return equations;
+}
+
+View cast(const Pose& camera_from_object, const StepContext& context) {
+    return context.views.generate(camera_from_object, context.observed.camera);
 }
 
 // The variances with which the unknowns of the field take part in the fit.
@@ -106,14 +200,14 @@ Matrix6d covariance_of(const NormalEquations& equations, const SensorField& fiel
     const SensorModel& sensor = context.observation.sensor();
     const Eigen::Index unknowns = field.num_unknowns();
     const Eigen::VectorXd fitted = fitted_variances(field, sensor).cwiseInverse();
-    Eigen::MatrixXd matrix = equations.information;
+    Eigen::MatrixXd matrix = equations.information();
     matrix.diagonal().tail(unknowns) += fitted;
     add_weak_prior(matrix, context.views.extent().diameter_m());
-    Eigen::MatrixXd spread = equations.information;
+    Eigen::MatrixXd spread = equations.information();
     spread.diagonal().tail(unknowns) += fitted.cwiseAbs2().cwiseProduct(prior_variances(field, sensor));
     add_weak_prior(spread, context.views.extent().diameter_m());
-    const Eigen::MatrixXd gain = matrix.llt().solve(Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols())).topRows(6);
-    const Matrix6d covariance = gain * spread * gain.transpose();
+    const Eigen::MatrixXd gain = matrix.llt().solve(Eigen::MatrixXd::Identity(matrix.rows(), 6)).transpose();
+    const Matrix6d covariance = gain * (spread * gain.transpose());
     return 0.5 * (covariance + covariance.transpose());
 }
 
@@ -125,15 +219,17 @@ FineFit fit_finely(const Pose& start, const StepContext& context) {
     const Eigen::Index unknowns = field.num_unknowns();
     const Eigen::VectorXd prior = fitted_variances(field, sensor).cwiseInverse();
     Linearisation at{start, Eigen::VectorXd::Zero(unknowns), 0.0};
-    NormalEquations equations;
+    NormalEquations equations(unknowns);
+    View view;
     for (int round = 0; round < kRounds; ++round) {
         // A start that is off by little more than the noise is drawn in from farther at first.
         at.extra_sigma_m = round == 0 ? 2.0 * sensor.systematic_sigma_m : 0.0;
-        equations = linearise(at, field, context);
-        Eigen::MatrixXd information = equations.information;
+        if (round != 1) view = cast(at.camera_from_object, context);
+        equations = linearise(at, view, field, context);
+        Eigen::MatrixXd information = equations.information();
         information.diagonal().tail(unknowns) += prior;
         add_weak_prior(information, context.views.extent().diameter_m());
-        const Eigen::VectorXd step = information.llt().solve(equations.gradient);
+        const Eigen::VectorXd step = information.llt().solve(equations.gradient());
         const Pose moved =
             perturb_about(at.camera_from_object, step.head<6>(), context.views.extent().centre_in_object());
         if (!is_valid(moved)) break;
@@ -146,7 +242,7 @@ FineFit fit_finely(const Pose& start, const StepContext& context) {
 Matrix6d covariance_at(const Pose& camera_from_object, const StepContext& context) {
     const SensorField field = field_over(context.observation.camera(), context.observation.sensor());
     const Linearisation at{camera_from_object, Eigen::VectorXd::Zero(field.num_unknowns()), 0.0};
-    return covariance_of(linearise(at, field, context), field, context);
+    return covariance_of(linearise(at, cast(camera_from_object, context), field, context), field, context);
 }
 
 Matrix6d about_origin(const Matrix6d& covariance_about_centre, const Eigen::Vector3d& centre_in_object) {
