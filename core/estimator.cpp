@@ -66,6 +66,7 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
     if (result.points_observed >= options_.min_candidates) {
         const ParticleSet predicted = particles_;
         searching_ = particles_.size() == 0 || search_again();
+        economical_ = options_.method.economy.on && one_mode_holds() && !searching_;
         if (searching_ && pairs_) patches_ = patches_of(observation, *pairs_, options_.seed, step_);
         if (searching_) start(observation, result);
         move_particles(observation, result);
@@ -75,9 +76,11 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
     }
     searching_ = false;
     patches_.reset();
+    result.num_particles = particles_.size();
     result.status = seen ? UpdateStatus::kEstimated : tracked_ ? UpdateStatus::kPredicted : UpdateStatus::kNoPose;
     result.verdict = Verdict::kLost;
     if (tracked_) describe_estimate(observation, result);
+    fine_.reset();
     constexpr double kConvincing = 0.8;
     frames_lost_ = result.verdict == Verdict::kLost || result.pixels.agreement() < kConvincing ? frames_lost_ + 1 : 0;
     result.seconds.total = seconds_since(begin);
@@ -107,8 +110,10 @@ void PoseEstimator::predict(const std::optional<Pose>& now_from_before, UpdateRe
     const Method& method = options_.method;
     if (particles_.size() == 0) return;
     std::optional<Pose> motion;
-    if (effective_sample_size(particles_.weights) < method.resample_below * particles_.size()) {
-        particles_ = systematic_resample(particles_, options_.seed, step_);
+    const int wanted = particles_wanted();
+    if (wanted != particles_.size() ||
+        effective_sample_size(particles_.weights) < method.resample_below * particles_.size()) {
+        particles_ = systematic_resample(particles_, wanted, options_.seed, step_);
         result.resampled = true;
     }
     if (now_from_before && is_valid(*now_from_before)) {  // a motion that is no motion was not measured
@@ -122,10 +127,26 @@ void PoseEstimator::predict(const std::optional<Pose>& now_from_before, UpdateRe
             extent.centre_in_object(), options_.seed, step_);
 }
 
+// As many as describe the posterior: its cells are the swarm's modes that are not far less likely than the best.
+int PoseEstimator::particles_wanted() const {
+    const Economy& economy = options_.method.economy;
+    if (!economy.on || !one_mode_holds()) return options_.num_particles;
+    constexpr double kFarLessLikely_nats = 7.0;
+    const double best = particles_.weights[map_index(particles_.weights)];
+    std::vector<Mode> likely;
+    for (int i = 0; i < particles_.size(); ++i)
+        if (particles_.weights[i] < best + kFarLessLikely_nats)
+            likely.push_back({particles_.poses[i], particles_.weights[i], 0.0});
+    const std::vector<Mode> cells =
+        distinct_modes(likely, particles_.size(), views_->extent().centre_in_object(), mode_distance());
+    const int size = kld_sample_size(static_cast<int>(cells.size()), economy.kld_error);
+    return std::clamp(size, std::min(economy.min_particles, options_.num_particles), options_.num_particles);
+}
+
 void PoseEstimator::move_particles(const Observation& observation, UpdateResult& result) {
     const Clock::time_point begin = Clock::now();
     const std::vector<MovedParticle> moved =
-        move_all(particles_.poses, observation, options_.method.step, RandomPurpose::kSampleConsensus, result);
+        move_all(particles_.poses, observation, step_now(), RandomPurpose::kSampleConsensus, result);
     std::vector<double> likelihoods;
     last_costs_.clear();
     for (int i = 0; i < particles_.size(); ++i) {
@@ -185,8 +206,7 @@ bool PoseEstimator::take_map(const Observation& observation, UpdateResult& resul
 
 // The chosen mode's fine fit and the track that the arm's motion carried, brought together.
 void PoseEstimator::correct_tracked(const Mode& chosen, bool replaced, const Observation& observation) {
-    const ObservedGrid observed = observe_on(grid_for(observation, options_.method.refinement.max_rays), observation);
-    const FineFit fit = fit_finely(chosen.camera_from_object, context_for(observation, observed, options_.method.step));
+    const FineFit fit = fit_finely(chosen.camera_from_object, fine_context(observation));
     observed_ = fit.covariance;
     if (!track_ || replaced)
         track_ = Track{fit.camera_from_object, fit.covariance, {}};
@@ -205,6 +225,29 @@ ObservedGrid PoseEstimator::observe_on(const PixelGrid& grid, const Observation&
         observed.weights.push_back(patch == nullptr ? 1.0F : static_cast<float>(patch->weight));
     }
     return observed;
+}
+
+// The grid of refined views, kept while the place to look at stays.
+StepContext PoseEstimator::fine_context(const Observation& observation) {
+    const PixelGrid grid = grid_for(observation, refinement_now().max_rays);
+    if (!fine_ || fine_->grid != grid) fine_ = observe_on(grid, observation);
+    return context_for(observation, *fine_, options_.method.step);
+}
+
+GradientStep PoseEstimator::step_now() const {
+    GradientStep step = options_.method.step;
+    if (economical_) step.max_rays = std::min(step.max_rays, options_.method.economy.step_rays);
+    return step;
+}
+
+Refinement PoseEstimator::refinement_now() const {
+    Refinement refinement = options_.method.refinement;
+    if (!economical_) return refinement;
+    const Economy& economy = options_.method.economy;
+    refinement.max_rays = std::min(refinement.max_rays, economy.rays);
+    refinement.rounds = std::min(refinement.rounds, economy.rounds);
+    refinement.rivals = std::min(refinement.rivals, economy.rivals);
+    return refinement;
 }
 
 StepContext PoseEstimator::context_for(const Observation& observation, const ObservedGrid& observed,
@@ -260,10 +303,8 @@ PixelGrid PoseEstimator::grid_for(const Observation& observation, int max_rays) 
 void PoseEstimator::describe_estimate(const Observation& observation, UpdateResult& result) {
     result.camera_from_object = tracked_->camera_from_object;
     result.cost = tracked_->cost;
-    const Refinement& refinement = options_.method.refinement;
     const ModelExtent& extent = views_->extent();
-    const ObservedGrid observed = observe_on(grid_for(observation, refinement.max_rays), observation);
-    const StepContext context = context_for(observation, observed, options_.method.step);
+    const StepContext context = fine_context(observation);
     const Eigen::Vector3d centre = extent.centre_in_object();
     const bool estimated = result.status == UpdateStatus::kEstimated;
     if (!track_) observed_ = covariance_at(tracked_->camera_from_object, context);
@@ -271,11 +312,13 @@ void PoseEstimator::describe_estimate(const Observation& observation, UpdateResu
     constexpr double kOneMetre = 1.0;
     result.observability = observability_of(estimated ? observed_ : Matrix6d(kOneMetre * Matrix6d::Identity()),
                                             0.5 * extent.diameter_m(), options_.tolerance.translation_m);
-    for (Mode& mode : result.modes)
-        mode.covariance = about_origin(covariance_at(mode.camera_from_object, context), centre);
+    for (Mode& mode : result.modes) {
+        const bool alone = result.modes.size() == 1 && estimated;  // then it was fitted
+        mode.covariance = about_origin(alone ? observed_ : covariance_at(mode.camera_from_object, context), centre);
+    }
     Evidence evidence;
     evidence.seen = estimated;
-    evidence.pixels = refined_cost(tracked_->camera_from_object, context, refinement);
+    evidence.pixels = refined_cost(tracked_->camera_from_object, context, refinement_now());
     evidence.rival_weight = rival_weight_;
     evidence.rivals_tried = rivals_tried_;
     evidence.covariance_about_centre = about_centre(result.covariance, centre);

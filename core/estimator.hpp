@@ -59,6 +59,7 @@ struct UpdateResult {
     std::vector<Mode> modes;                 // refined, best first; the default method's
     Observability observability;             // of this frame alone; the tracked pose may be known better
     PixelCost pixels;                        // how the estimate's rays compare with the depth image
+    int num_particles = 0;                   // in this update
     double effective_sample_size = 0.0;      // 1..number of particles, after weighting
     bool resampled = false;                  // before this update's propagation
     bool mode_replaced = false;              // another mode explains the observation better than the tracked one
@@ -99,17 +100,21 @@ class PoseEstimator {
     bool search_again() const;
     std::vector<Mode> near_modes(const std::vector<Mode>& modes) const;
     void bring_to_one_representative(std::vector<Mode>& modes) const;
+    bool one_mode_holds() const;
     bool rivals_due() const;
+    int particles_wanted() const;
+    GradientStep step_now() const;
+    Refinement refinement_now() const;
     void weigh_rivals(const UpdateResult& result, bool tried);
     std::vector<Mode> modes_to_refine(const Observation& observation, UpdateResult& result) const;
     std::vector<Mode> best_rivals(const std::vector<Mode>& leaders, const Observation& observation,
                                   UpdateResult& result) const;
     std::vector<MovedParticle> move_all(const std::vector<Pose>& poses, const Observation& observation,
                                         const GradientStep& step, RandomPurpose purpose, UpdateResult& result) const;
-    std::vector<Mode> refine_all(const std::vector<Mode>& modes, const Observation& observation,
-                                 UpdateResult& result) const;
+    std::vector<Mode> refine_all(const std::vector<Mode>& modes, const Observation& observation, UpdateResult& result);
     StepContext context_for(const Observation& observation, const ObservedGrid& observed,
                             const GradientStep& step) const;
+    StepContext fine_context(const Observation& observation);
     ObservedGrid observe_on(const PixelGrid& grid, const Observation& observation) const;
     PixelGrid grid_for(const Observation& observation, int max_rays) const;
     PixelGrid grid_around(const Pose& camera_from_object, const Observation& observation, int max_rays) const;
@@ -125,6 +130,7 @@ class PoseEstimator {
     std::vector<SurfaceAnchor> anchors_;  // of the start on the surface; that on pairs has its own
     std::optional<AnchorPairs> pairs_;
     std::optional<PatchGrid> patches_;  // while searching
+    std::optional<ObservedGrid> fine_;  // during an update
     ParticleSet particles_;
     std::optional<Mode> tracked_;           // the estimate of the last update
     std::optional<Track> track_;            // the same with its spread; the default method's
@@ -133,6 +139,7 @@ class PoseEstimator {
     Matrix6d observed_ = Matrix6d::Zero();  // covariance of the last observation's own fit, about the centre
     double rival_weight_ = 0.0;             // when rivals were last tried
     bool searching_ = false;                // in this update the object may be anywhere
+    bool economical_ = false;               // in this update one mode holds, and less will do
     bool rivals_tried_ = false;             // since the tracked mode was last replaced
     int frames_lost_ = 0;                   // updates in a row whose estimate does not convince
     int frames_held_ = 0;                   // updates since the tracked mode was last replaced

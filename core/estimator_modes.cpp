@@ -13,7 +13,7 @@ namespace nearpose {
 // unless another one's present cost is clearly better: one early wrong lock must not last.
 bool PoseEstimator::take_refined_mode(const Observation& observation, UpdateResult& result) {
     const auto begin = std::chrono::steady_clock::now();
-    const Refinement& refinement = options_.method.refinement;
+    const Refinement refinement = refinement_now();
     const std::vector<Mode> refined = refine_all(modes_to_refine(observation, result), observation, result);
     const Eigen::Vector3d centre = views_->extent().centre_in_object();
     result.modes = distinct_modes(refined, static_cast<int>(refined.size()), centre, mode_distance());
@@ -40,10 +40,9 @@ bool PoseEstimator::take_refined_mode(const Observation& observation, UpdateResu
 }
 
 std::vector<Mode> PoseEstimator::refine_all(const std::vector<Mode>& modes, const Observation& observation,
-                                            UpdateResult& result) const {
-    const Refinement& refinement = options_.method.refinement;
-    const ObservedGrid observed = observe_on(grid_for(observation, refinement.max_rays), observation);
-    const StepContext context = context_for(observation, observed, options_.method.step);
+                                            UpdateResult& result) {
+    const Refinement refinement = refinement_now();
+    const StepContext context = fine_context(observation);
     std::vector<MovedParticle> moved(modes.size());
     parallel_for(static_cast<int>(modes.size()), options_.num_threads,
                  [&](int k) { moved[k] = refine_mode(modes[k].camera_from_object, context, refinement); });
@@ -76,12 +75,16 @@ std::vector<Mode> PoseEstimator::modes_to_refine(const Observation& observation,
     return modes;
 }
 
-// Rivals are tried in every frame until one mode holds, and as long as the image does not tell them apart.
+// For a while, told from its rivals by the image, and it convinces.
+bool PoseEstimator::one_mode_holds() const {
+    constexpr double kTold = 0.01;
+    return frames_held_ >= options_.method.refinement.frames_to_hold && rival_weight_ < kTold && frames_lost_ == 0;
+}
+
+// Rivals are tried in every frame until one mode holds.
 bool PoseEstimator::rivals_due() const {
     const Refinement& refinement = options_.method.refinement;
-    constexpr double kTold = 0.01;
-    const bool holds = frames_held_ >= refinement.frames_to_hold && rival_weight_ < kTold;
-    return !holds || step_ % static_cast<std::uint64_t>(refinement.rival_period) == 0;
+    return !one_mode_holds() || step_ % static_cast<std::uint64_t>(refinement.rival_period) == 0;
 }
 
 // What the best mode may be mistaken for by the part's own shape.
@@ -120,7 +123,7 @@ void PoseEstimator::weigh_rivals(const UpdateResult& result, bool tried) {
 
 std::vector<Mode> PoseEstimator::best_rivals(const std::vector<Mode>& leaders, const Observation& observation,
                                              UpdateResult& result) const {
-    const Refinement& refinement = options_.method.refinement;
+    const Refinement refinement = refinement_now();
     constexpr std::size_t kLeaders = 2;
     const std::size_t used = std::min(leaders.size(), kLeaders);
     std::vector<Pose> proposals;

@@ -28,6 +28,7 @@ Method method_default() {
     method.start_step.extra_sigma_diameters = 0.03;
     method.refinement.modes = 5;
     method.refinement.rivals = 96;
+    method.economy.on = true;
     return method;
 }
 
@@ -60,6 +61,15 @@ void validate(const Refinement& refinement) {
     check_option("refinement.frames_to_hold", refinement.frames_to_hold, 0, 1e6);
 }
 
+void validate(const Economy& economy) {
+    check_option("economy.min_particles", economy.min_particles, 1, 1e6);
+    check_option("economy.kld_error", economy.kld_error, 1e-6, 10.0);
+    check_option("economy.step_rays", economy.step_rays, 1, 1e7);
+    check_option("economy.rays", economy.rays, 1, 1e7);
+    check_option("economy.rounds", economy.rounds, 1, 100);
+    check_option("economy.rivals", economy.rivals, 0, 1e5);
+}
+
 }  // namespace
 
 void validate(const Method& method) {
@@ -68,6 +78,7 @@ void validate(const Method& method) {
     validate(method.start_step, "start_step");
     validate(method.step, "step");
     validate(method.refinement);
+    validate(method.economy);
     check_option("pixel_cost.truncation_sigmas", method.pixel_cost.truncation_sigmas, 0.1, 100.0);
     check_option("pixel_cost.occluded_cost", method.pixel_cost.occluded_cost, 0.0, 1.0);
     check_option("pixel_cost.unexplained_cost", method.pixel_cost.unexplained_cost, 0.0, 1.0);

@@ -44,6 +44,19 @@ struct Refinement {
     int frames_to_hold = 5;  // frames without replacement after which one mode holds
 };
 
+// What is spared while one mode holds: the posterior is narrow then, and a few particles describe it (KLD sampling, Fox
+// 2003). At the start, after a loss and while a rival is not ruled out everything is as without.
+struct Economy {
+    bool on = false;
+    int min_particles = 12;  // for a swarm of one mode
+    double kld_error =
+        0.15;             // bound on the Kullback-Leibler distance between swarm and posterior, with 99 % confidence
+    int step_rays = 200;  // of a particle's view
+    int rays = 1500;      // of a refined view
+    int rounds = 3;       // of refinement
+    int rivals = 32;
+};
+
 struct Method {
     Start start = Start::kSphere;
     int start_candidates = 0;  // random starts of which the best become the particles; 0: the particles themselves
@@ -54,6 +67,7 @@ struct Method {
     bool scale_by_overlap = true;  // of kOverlapMse: times m / n; false: the plain mean squared error of the pairs
     PixelCostOptions pixel_cost;
     Refinement refinement;
+    Economy economy;
     double diffusion_rotation_rad = 0.03;
     double diffusion_diameters = 0.008;
     double resample_below = 0.5;  // effective sample size, as a fraction of the particles

@@ -52,15 +52,15 @@ double effective_sample_size(const std::vector<double>& weights) {
     return sum_of_squares > 0.0 ? 1.0 / sum_of_squares : 0.0;
 }
 
-ParticleSet systematic_resample(const ParticleSet& particles, std::uint64_t seed, std::uint64_t step) {
-    const int count = particles.size();
-    if (count == 0) return particles;
+ParticleSet systematic_resample(const ParticleSet& particles, int count, std::uint64_t seed, std::uint64_t step) {
+    const int size = particles.size();
+    if (size == 0) return particles;
     const std::vector<double> p = probabilities(particles.weights);
     const double offset = RandomStream(seed, step, 0, RandomPurpose::kResampling).uniform();
     ParticleSet resampled;
     resampled.poses.reserve(count);
     resampled.weights.assign(count, 0.0);
-    int last_possible = count - 1;  // rounding of the sum may let the last pointer run past it
+    int last_possible = size - 1;  // rounding of the sum may let the last pointer run past it
     while (last_possible > 0 && p[last_possible] == 0.0) --last_possible;
     double cumulative = p[0];
     int source = 0;
@@ -70,6 +70,14 @@ ParticleSet systematic_resample(const ParticleSet& particles, std::uint64_t seed
         resampled.poses.push_back(particles.poses[source]);
     }
     return resampled;
+}
+
+int kld_sample_size(int num_cells, double max_error) {
+    constexpr double kQuantile = 2.326;  // of the normal distribution, 99 %
+    const double k = num_cells - 1;
+    if (k < 1.0) return 0;
+    const double root = 1.0 - 2.0 / (9.0 * k) + std::sqrt(2.0 / (9.0 * k)) * kQuantile;
+    return static_cast<int>(std::ceil(k / (2.0 * max_error) * root * root * root));
 }
 
 int map_index(const std::vector<double>& weights) {

@@ -42,9 +42,14 @@ void update_weights(ParticleSet& particles, const std::vector<double>& negative_
 // nothing under- or overflows. 0 for an empty set.
 double effective_sample_size(const std::vector<double>& weights);
 
-// Systematic resampling (one uniform draw, N even pointers): particle i is taken N p_i times, rounded up or down.
-// Weights of the copies become equal (0).
-ParticleSet systematic_resample(const ParticleSet& particles, std::uint64_t seed, std::uint64_t step);
+// Systematic resampling (one uniform draw, `count` even pointers): particle i is taken count * p_i times, rounded up or
+// down. Weights of the copies become equal (0).
+ParticleSet systematic_resample(const ParticleSet& particles, int count, std::uint64_t seed, std::uint64_t step);
+
+// KLD sampling: so many particles keep the Kullback-Leibler distance between the swarm and a posterior that fills
+// `num_cells` cells below `max_error` with 99 % probability (Fox 2003, the Wilson-Hilferty approximation of the
+// chi-square quantile). 0 for a single cell, which any number describes.
+int kld_sample_size(int num_cells, double max_error);
 
 // Index of the smallest weight, the first of equals; -1 for an empty set.
 int map_index(const std::vector<double>& weights);

@@ -52,7 +52,8 @@ TEST(Particles, SystematicResamplingTakesEachParticleItsShareRoundedUpOrDown) {
     for (const double value : p)
         weights.push_back(value > 0 ? -std::log(value) : std::numeric_limits<double>::infinity());
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
-        const ParticleSet resampled = systematic_resample(particles_at_x(weights), seed, 1);
+        const ParticleSet resampled =
+            systematic_resample(particles_at_x(weights), static_cast<int>(weights.size()), seed, 1);
         std::vector<int> copies(p.size(), 0);
         for (const Pose& pose : resampled.poses) ++copies[static_cast<int>(pose.translation.x())];
         for (std::size_t i = 0; i < p.size(); ++i) {
@@ -69,7 +70,8 @@ TEST(Particles, SystematicResamplingIsUnbiased) {
     for (const double value : p) weights.push_back(-std::log(value));
     constexpr int kRuns = 20000;
     for (int run = 0; run < kRuns; ++run)
-        for (const Pose& pose : systematic_resample(particles_at_x(weights), run, 3).poses)
+        for (const Pose& pose :
+             systematic_resample(particles_at_x(weights), static_cast<int>(weights.size()), run, 3).poses)
             mean[static_cast<int>(pose.translation.x())] += 1.0 / (kRuns * 4.0);
     for (std::size_t i = 0; i < p.size(); ++i) EXPECT_NEAR(mean[i], p[i], 0.004);
 }
@@ -77,7 +79,7 @@ TEST(Particles, SystematicResamplingIsUnbiased) {
 TEST(Particles, ResamplingOneWinnerNeverTakesAnother) {
     std::vector<double> weights(100, std::numeric_limits<double>::infinity());
     weights[42] = 5.0;
-    for (const Pose& pose : systematic_resample(particles_at_x(weights), 1, 1).poses)
+    for (const Pose& pose : systematic_resample(particles_at_x(weights), static_cast<int>(weights.size()), 1, 1).poses)
         EXPECT_EQ(pose.translation.x(), 42.0);
 }
 
