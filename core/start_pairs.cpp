@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kDistanceCells = 10, kAngleCells = 9;  // 20 degrees
 constexpr int kSecondPoints = 8;
-constexpr int kPulled = 3;  // poses for each that is wanted
+constexpr int kPulled = 2;            // poses for each that is wanted
 constexpr int kMaxPairAnchors = 500;  // their pairs are a quarter of a million
 
 int angle_cell(double cosine) {
@@ -133,8 +133,8 @@ std::array<int, 6> cell_of_pose(const Pose& pose, double diameter_m, const Eigen
     return cell;
 }
 
-// About `count` of the measured oriented points, as often as they tell something: a plane that fills the view gives few.
-// The first ones are spread over the image as all are.
+// About `count` of the measured oriented points, as often as they tell something: a plane that fills the view gives
+// few. The first ones are spread over the image as all are.
 std::vector<SurfaceAnchor> telling_points(const PatchGrid& grid, std::size_t count) {
     constexpr std::size_t kStep = 149;  // prime to most numbers of points
     const auto tells = [](const Patch& patch) { return patch.rarity > 0.0 ? patch.telling : 0.0; };
@@ -213,7 +213,7 @@ PatchGrid patches_of(const Observation& observation, const AnchorPairs& pairs, s
 
 std::vector<Pose> start_on_pairs(const Observation& observation, const AnchorPairs& pairs, const PatchGrid& patches,
                                  const PairStartOptions& options, std::uint64_t seed, std::uint64_t step) {
-    constexpr std::size_t kScreened = 128, kPoints = 512;
+    constexpr std::size_t kScreened = 128, kPoints = 256;
     constexpr double kFine = 0.5;  // of the tolerance, once pulled
     const double tolerance_m = start_tolerance_m(observation, pairs);
     Draw draw{observation, pairs, patches, {}};

@@ -105,15 +105,15 @@ double share_on_surface(const SurfaceField& field, const Pose& camera_from_objec
 Pose pulled_onto_surface(const SurfaceField& field, const Pose& camera_from_object,
                          const std::vector<SurfaceAnchor>& measured, double tolerance_m) {
     constexpr int kRounds = 4;
-    constexpr float kAlike = 0.5F;     // cosine: while the pose is still off
-    constexpr double kDamping = 1.0;  // points
+    constexpr float kAlike = 0.5F;                 // cosine: while the pose is still off
+    constexpr double kDamping = 1.0;               // points
     const double scale_m = 4.0 * field.reach_m();  // lengths in it weigh as turns
     Pose pose = camera_from_object;
     for (int round = 0; round < kRounds; ++round) {
         const Pose object_from_camera = pose.inverse();
         const Eigen::Matrix3f rotation = object_from_camera.rotation_matrix().cast<float>();
         const Eigen::Vector3f translation = object_from_camera.translation.cast<float>();
-        const double gate_m = tolerance_m * (kRounds - round) * 0.5 + 0.5 * tolerance_m;
+        const double gate_m = 0.5 * tolerance_m * (kRounds - round + 1);  // narrower from round to round
         const Eigen::Vector3f centre = field.centre_in_object().cast<float>();
         const auto gate = static_cast<float>(gate_m);
         Eigen::Matrix<float, 6, 6> A = static_cast<float>(kDamping) * Eigen::Matrix<float, 6, 6>::Identity();
@@ -132,7 +132,7 @@ Pose pulled_onto_surface(const SurfaceField& field, const Pose& camera_from_obje
             b += off / static_cast<float>(scale_m) * row;
         }
         const Eigen::Matrix<float, 6, 1> solved = A.selfadjointView<Eigen::Lower>().ldlt().solve(b);
-        // Unknowns are turn and shift / scale; the rows above are those of residual / scale.
+        // The unknowns are the turn and the shift in units of the scale, as the rows are.
         Twist twist;
         twist << solved.head<3>().cast<double>(), scale_m * solved.tail<3>().cast<double>();
         if (!twist.allFinite()) return pose;
