@@ -29,7 +29,7 @@ ParticleSet PoseEstimator::start_where_surfaces_meet(const Observation& observat
     ParticleSet particles;
     if (pairs_ && patches_) {
         // Where nothing is segmented most draws miss the object.
-        constexpr int kDrawsUnsegmented = 3;
+        constexpr int kDrawsUnsegmented = 2;
         const bool segmented = observation.segmented();
         const PairStartOptions start{(segmented ? 1 : kDrawsUnsegmented) * method.start_draws,
                                      segmented ? count / 2 : 2 * count / 3, static_cast<std::uint64_t>(count),

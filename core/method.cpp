@@ -21,7 +21,8 @@ Method method_paper() {
 Method method_default() {
     Method method;
     method.start = Start::kPairs;
-    method.start_candidates = 1500;
+    method.start_candidates = 300;
+    method.start_draws = 10000;
     method.start_step.rounds = 2;
     method.start_step.max_rays = 400;
     method.start_step.max_distance_diameters = 0.2;

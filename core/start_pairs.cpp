@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kDistanceCells = 10, kAngleCells = 9;  // 20 degrees
 constexpr int kSecondPoints = 8;
+constexpr int kPulled = 2;            // poses for each that is wanted
 constexpr int kMaxPairAnchors = 500;  // their pairs are a quarter of a million
 
 int angle_cell(double cosine) {
@@ -58,7 +59,6 @@ struct Draw {
     const AnchorPairs& pairs;
     const PatchGrid& grid;
     std::vector<double> chances;  // cumulative, of the patches
-    double tolerance_m = 0.0;     // within which model and depth agree
 
     // Farther second points are out of the image.
     double max_radius_pixels(double pixels_per_metre) const {
@@ -69,7 +69,7 @@ struct Draw {
 
 struct Guess {
     Pose camera_from_object;
-    double score = -1.0;  // see score_of; below every score where there is no pose
+    double score = 0.0;  // share of the measured points that lie on the model; 0: no pose
 };
 
 // A measured point, as likely as it is rare.
@@ -120,40 +120,6 @@ std::optional<Pose> pose_from_pair(const Draw& draw, RandomStream& random) {
                 first.point_in_object.cast<double>() - rotation * anchor.point_in_object.cast<double>()};
 }
 
-// Looks at a few points of the model that are seen from about there. What lies behind the measured surface may be
-// hidden by something else, what lies in front of it cannot be.
-double score_of(const Pose& pose, const Draw& draw) {
-    constexpr double kBehindFar = 0.7, kBehindNear = 0.2;  // near, other points are seen than from afar
-    constexpr double kShrink = 16.0;                       // points: few that agree say little
-    constexpr int kLeastSeen = 8, kEnoughSeen = 64;
-    const Observation& observation = draw.observation;
-    const PinholeCamera& camera = observation.camera();
-    const Eigen::Matrix3f rotation = pose.rotation_matrix().cast<float>();
-    const Eigen::Vector3f translation = pose.translation.cast<float>();
-    const auto tolerance_m = static_cast<float>(draw.tolerance_m);
-    int seen = 0, in_front = 0, behind = 0;
-    double agreeing = 0.0;
-    const Eigen::Vector3f camera_in_object = rotation.transpose() * -translation;
-    const bool near = (camera_in_object - draw.pairs.centre_in_object()).norm() < draw.pairs.diameter_m();
-    for (const Eigen::Vector3f& in_object : draw.pairs.seen_from(camera_in_object)) {
-        const Eigen::Vector3f point = rotation * in_object + translation;
-        if (!(point.z() > 0.0F)) continue;
-        const Eigen::Vector2d uv = camera.project(point.cast<double>());
-        const int pixel = camera.pixel_at(uv.x(), uv.y());
-        if (pixel < 0 || observation.states()[pixel] == PixelState::kNoDepth) continue;
-        const float off_m = observation.depth_m()[pixel] - point.z();
-        const bool on_object = observation.states()[pixel] == PixelState::kCandidate;
-        if (++seen > kEnoughSeen) break;
-        const Patch* patch = draw.grid.at(camera, pixel);
-        if (on_object && std::abs(off_m) < tolerance_m)
-            agreeing += patch == nullptr ? 0.0 : near ? patch->telling : patch->weight;
-        in_front += off_m >= tolerance_m;
-        behind += off_m <= -tolerance_m && on_object;
-    }
-    return seen < kLeastSeen ? -1.0
-                             : (agreeing - in_front - (near ? kBehindNear : kBehindFar) * behind) / (seen + kShrink);
-}
-
 // Poses of one cell are of one basin; the cells are coarse.
 std::array<int, 6> cell_of_pose(const Pose& pose, double diameter_m, const Eigen::Vector3d& centre) {
     constexpr double kLength = 0.06, kTurn = 0.25;
@@ -167,30 +133,48 @@ std::array<int, 6> cell_of_pose(const Pose& pose, double diameter_m, const Eigen
     return cell;
 }
 
-// What is seen of the model from all around, a few points from each direction.
-std::vector<AnchorPairs::Screen> find_screens(const ViewGenerator& views) {
-    constexpr int kDirections = 128, kSide = 32;
-    constexpr std::size_t kPoints = 256;  // close up most of them lie beyond the image's border
-    constexpr std::size_t kStep = 37;     // prime to their number: the first few are spread over the view
-    std::vector<AnchorPairs::Screen> screens;
-    for (const Eigen::Vector3d& direction : directions_all_around(kDirections)) {
-        const View view = view_from(views, direction, kSide);
-        AnchorPairs::Screen screen{direction.cast<float>(), {}};
-        for (std::size_t k = 0; k < kPoints && view.size() > 0; ++k)
-            screen.points_in_object.push_back(view.points_in_object[k * kStep % kPoints * view.size() / kPoints]);
-        screens.push_back(screen);
+// About `count` of the measured oriented points, as often as they tell something: a plane that fills the view gives
+// few. The first ones are spread over the image as all are.
+std::vector<SurfaceAnchor> telling_points(const PatchGrid& grid, std::size_t count) {
+    constexpr std::size_t kStep = 149;  // prime to most numbers of points
+    const auto tells = [](const Patch& patch) { return patch.rarity > 0.0 ? patch.telling : 0.0; };
+    double sum = 0.0;
+    for (const Patch& patch : grid.patches) sum += tells(patch);
+    const double step = sum / static_cast<double>(count);
+    std::vector<SurfaceAnchor> in_rows, points;
+    double reached = 0.0, mark = 0.5 * step;
+    for (const Patch& patch : grid.patches) {
+        reached += tells(patch);
+        for (; mark < reached && in_rows.size() < count; mark += step) in_rows.push_back(patch.surface);
     }
-    return screens;
+    for (std::size_t k = 0; k < in_rows.size(); ++k) points.push_back(in_rows[k * kStep % in_rows.size()]);
+    return points;
+}
+
+// The best first, at most one from each cell of poses, at most `count`.
+std::vector<Guess> best_distinct(const std::vector<Guess>& guesses, int count, const AnchorPairs& pairs) {
+    std::vector<int> order(guesses.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return guesses[a].score > guesses[b].score; });
+    std::map<std::array<int, 6>, int> taken;
+    std::vector<Guess> best;
+    for (const int index : order) {
+        const Guess& guess = guesses[index];
+        if (static_cast<int>(best.size()) >= count || !(guess.score > 0.0)) break;
+        if (taken[cell_of_pose(guess.camera_from_object, pairs.diameter_m(), pairs.surface().centre_in_object())]++ ==
+            0)
+            best.push_back(guess);
+    }
+    return best;
 }
 
 }  // namespace
 
 AnchorPairs::AnchorPairs(const ViewGenerator& views)
     : anchors_(find_anchors(views)),
-      screens_(find_screens(views)),
+      surface_(views),
       diameter_m_(views.extent().diameter_m()),
       cells_(static_cast<std::size_t>(kDistanceCells) * kAngleCells * kAngleCells * kAngleCells) {
-    centre_in_object_ = views.extent().centre_in_object().cast<float>();
     const int count = static_cast<int>(anchors_.size());
     const int every = std::max(1, count / kMaxPairAnchors);
     for (int i = 0; i < count; i += every) {
@@ -200,15 +184,6 @@ AnchorPairs::AnchorPairs(const ViewGenerator& views)
         }
     }
     largest_face_m2_ = largest_face(anchors_, 0.02 * diameter_m_);
-}
-
-const std::vector<Eigen::Vector3f>& AnchorPairs::seen_from(const Eigen::Vector3f& camera_in_object) const {
-    const Eigen::Vector3f direction = camera_in_object - centre_in_object_;
-    std::size_t best = 0;
-    for (std::size_t k = 1; k < screens_.size(); ++k) {
-        if (screens_[k].direction.dot(direction) > screens_[best].direction.dot(direction)) best = k;
-    }
-    return screens_[best].points_in_object;
 }
 
 int AnchorPairs::cell_of(const SurfaceAnchor& first, const SurfaceAnchor& second) const {
@@ -238,29 +213,28 @@ PatchGrid patches_of(const Observation& observation, const AnchorPairs& pairs, s
 
 std::vector<Pose> start_on_pairs(const Observation& observation, const AnchorPairs& pairs, const PatchGrid& patches,
                                  const PairStartOptions& options, std::uint64_t seed, std::uint64_t step) {
-    const double diameter_m = pairs.diameter_m();
-    Draw draw{observation, pairs, patches, {}, start_tolerance_m(observation, pairs)};
+    constexpr std::size_t kScreened = 128, kPoints = 256;
+    constexpr double kFine = 0.5;  // of the tolerance, once pulled
+    const double tolerance_m = start_tolerance_m(observation, pairs);
+    Draw draw{observation, pairs, patches, {}};
     double sum = 0.0;
     for (const Patch& patch : draw.grid.patches) draw.chances.push_back(sum += patch.rarity);
     if (!(sum > 0.0)) return {};
+    const std::vector<SurfaceAnchor> measured = telling_points(patches, kPoints);
     std::vector<Guess> guesses(static_cast<std::size_t>(options.draws));
     parallel_for(options.draws, options.num_threads, [&](int i) {
         RandomStream random(seed, step, options.first_stream + static_cast<std::uint64_t>(i), RandomPurpose::kStart);
         const std::optional<Pose> pose = i % 4 != 0 ? pose_from_pair(draw, random) : pose_from_point(draw, random);
-        if (pose) guesses[i] = {*pose, score_of(*pose, draw)};
+        if (pose) guesses[i] = {*pose, share_on_surface(pairs.surface(), *pose, measured, kScreened, tolerance_m)};
     });
-    std::vector<int> order(guesses.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return guesses[a].score > guesses[b].score; });
-    const Eigen::Vector3d centre = pairs.anchors().front().point_in_object.cast<double>();
-    constexpr double kWorst = -0.7;
-    std::map<std::array<int, 6>, int> taken;
+    std::vector<Guess> best = best_distinct(guesses, kPulled * options.count, pairs);
+    parallel_for(static_cast<int>(best.size()), options.num_threads, [&](int i) {
+        Pose& pose = best[i].camera_from_object;
+        pose = pulled_onto_surface(pairs.surface(), pose, measured, tolerance_m);
+        best[i].score = share_on_surface(pairs.surface(), pose, measured, kPoints, kFine * tolerance_m);
+    });
     std::vector<Pose> poses;
-    for (const int index : order) {
-        if (static_cast<int>(poses.size()) >= options.count || guesses[index].score <= kWorst) break;
-        if (taken[cell_of_pose(guesses[index].camera_from_object, diameter_m, centre)]++ > 0) continue;
-        poses.push_back(guesses[index].camera_from_object);
-    }
+    for (const Guess& guess : best_distinct(best, options.count, pairs)) poses.push_back(guess.camera_from_object);
     return poses;
 }
 

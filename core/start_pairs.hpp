@@ -1,6 +1,6 @@
 // Starts from pairs of oriented points: two measured points with their normals are laid on two of the model that lie to
-// each other as they do (point pair features, Drost et al. 2010), and poses that contradict the image are left out
-// before any view is cast. It finds a part of which little is seen, and a part among other things.
+// each other as they do (point pair features, Drost et al. 2010), and the poses that lay most of the measured points on
+// the model are kept, before any view is cast. It finds a part of which little is seen, and a part among other things.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 #include "core/observation.hpp"
 #include "core/patches.hpp"
 #include "core/start.hpp"
+#include "core/surface_field.hpp"
 
 namespace nearpose {
 
@@ -25,15 +26,8 @@ class AnchorPairs {
     // Those that lie to each other as the two oriented points do, to within the cells of the table.
     const std::vector<Pair>& alike(const SurfaceAnchor& first, const SurfaceAnchor& second) const;
 
-    // Points of the model's surface that a camera there sees, roughly: as from far away in that direction.
-    struct Screen {
-        Eigen::Vector3f direction;  // from the model's centre to the camera, unit
-        std::vector<Eigen::Vector3f> points_in_object;
-    };
-    const std::vector<Eigen::Vector3f>& seen_from(const Eigen::Vector3f& camera_in_object) const;
-
     const std::vector<SurfaceAnchor>& anchors() const { return anchors_; }
-    const Eigen::Vector3f& centre_in_object() const { return centre_in_object_; }
+    const SurfaceField& surface() const { return surface_; }
     double diameter_m() const { return diameter_m_; }
     double largest_face_m2() const { return largest_face_m2_; }  // of the model's planes
     double min_distance_m() const { return kMinDistance * diameter_m_; }
@@ -44,8 +38,7 @@ class AnchorPairs {
     int cell_of(const SurfaceAnchor& first, const SurfaceAnchor& second) const;  // -1: out of the table
 
     std::vector<SurfaceAnchor> anchors_;
-    std::vector<Screen> screens_;
-    Eigen::Vector3f centre_in_object_ = Eigen::Vector3f::Zero();
+    SurfaceField surface_;
     double diameter_m_;
     double largest_face_m2_ = 0.0;
     std::vector<std::vector<Pair>> cells_;
@@ -62,7 +55,8 @@ struct PairStartOptions {
 };
 
 // Random pairs of the observation, each with a random pair of the model that lies alike, and some single points; the
-// poses that the image contradicts least, best first, at most one from each cell of poses. May give fewer than wanted.
+// poses that lay most of the measured surface on the model's, pulled onto it, best first, at most one from each cell of
+// poses. May give fewer than wanted.
 std::vector<Pose> start_on_pairs(const Observation& observation, const AnchorPairs& pairs, const PatchGrid& patches,
                                  const PairStartOptions& options, std::uint64_t seed, std::uint64_t step);
 
