@@ -1,0 +1,66 @@
+// Views of a swarm: ours, the bare Embree calls for the same rays, and single rays of 160 x 120 pixels.
+#include "tests/bench/described.hpp"
+#include "tests/bench/fixture.hpp"
+#include "tests/bench/naive/embree_rays.hpp"
+#include "tests/bench/naive/single_ray_views.hpp"
+
+namespace nearpose::bench {
+namespace {
+
+constexpr int kTotalRays = 6000;  // of an iteration: its packets must leave room for the tree in the cache
+
+PinholeCamera grid_camera(int rays) {
+    return camera_of(grid_of(still().observation, rays), still().camera);
+}
+
+std::vector<Pose> poses_for(int rays) {
+    const std::vector<Pose>& swarm = still().swarm;
+    const auto count = std::min<std::size_t>(swarm.size(), kTotalRays / rays);
+    return {swarm.begin(), swarm.begin() + static_cast<std::ptrdiff_t>(count)};
+}
+
+void ours(benchmark::State& state) {
+    const int rays = static_cast<int>(state.range(0));
+    const PinholeCamera camera = grid_camera(rays);
+    const std::vector<Pose> poses = poses_for(rays);
+    for (auto _ : state)
+        for (const Pose& pose : poses) benchmark::DoNotOptimize(still().views.generate(pose, camera));
+    describe(state, static_cast<double>(poses.size()),
+             "unit=view naive=views/naive/160x120 bare=views/bare/" + std::to_string(rays) + " bare_most=1.5");
+}
+
+void bare(benchmark::State& state) {
+    const int rays = static_cast<int>(state.range(0));
+    const naive::TriangleScene scene(engine_block());
+    const std::vector<Pose> poses = poses_for(rays);
+    std::vector<naive::RayPacket> packets;
+    for (const Pose& pose : poses) {
+        const auto more = naive::prepare_packets(pose, grid_camera(rays));
+        packets.insert(packets.end(), more.begin(), more.end());
+    }
+    for (auto _ : state) {
+        for (const naive::RayPacket& packet : packets) {
+            alignas(64) RTCRayHit16 rays_and_hits = packet.rays;  // a cast shortens its rays
+            scene.intersect(packet.valid, rays_and_hits);
+            benchmark::DoNotOptimize(rays_and_hits);
+        }
+    }
+    describe(state, static_cast<double>(poses.size()), "unit=view naive=views/naive/160x120");
+}
+
+void single_rays(benchmark::State& state) {
+    const naive::SingleRayViews views(engine_block());
+    const PinholeCamera camera = naive::quarter_camera(still().camera);
+    constexpr int kPoses = 4;
+    for (auto _ : state)
+        for (int i = 0; i < kPoses; ++i)
+            benchmark::DoNotOptimize(views.generate(still().swarm[static_cast<std::size_t>(i)], camera));
+    describe(state, kPoses, "unit=view");
+}
+
+BENCHMARK(single_rays)->Name("views/naive/160x120")->Unit(benchmark::kMillisecond);
+BENCHMARK(bare)->Name("views/bare")->Arg(384)->Arg(768)->Arg(1500)->Arg(6000)->Unit(benchmark::kMillisecond);
+BENCHMARK(ours)->Name("views/ours")->Arg(384)->Arg(768)->Arg(1500)->Arg(6000)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace nearpose::bench
