@@ -28,7 +28,7 @@ mkdir -p "$out"
 # run NAME REPETITIONS FILTER: one process, since the largest memory is that of a process
 run() {
     "$build/tests/bench/nearpose_bench" --benchmark_filter="$3" --benchmark_repetitions="$2" \
-        --benchmark_min_time=0.05 --benchmark_out="$out/$1.json" --benchmark_out_format=json >/dev/null 2>"$out/$1.log" ||
+        --benchmark_min_time=0.05 --benchmark_enable_random_interleaving=true --benchmark_out="$out/$1.json" --benchmark_out_format=json >/dev/null 2>"$out/$1.log" ||
         { cat "$out/$1.log" >&2; exit 1; }
 }
 run stages 5 '^(views|neighbours|consensus|least_squares|likelihood|observation|fine_fit|refinement|start)/'

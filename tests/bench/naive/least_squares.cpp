@@ -69,8 +69,13 @@ Pose solve_point_to_plane(const std::vector<Pair>& pairs, const Pose& camera_fro
 
 std::vector<Pair> sample_consensus(const std::vector<Pair>& pairs, int hypotheses, double max_distance_m,
                                    RandomStream random) {
-    std::vector<Pair> best;
     if (pairs.size() < 4) return pairs;
+    const auto supports = [&](const Eigen::Isometry3d& camera_from_object, const Pair& pair) {
+        const Eigen::Vector3d moved = camera_from_object * pair.point_in_object;
+        return (moved - pair.point_in_camera).squaredNorm() <= max_distance_m * max_distance_m;
+    };
+    Eigen::Isometry3d best = Eigen::Isometry3d::Identity();
+    int best_count = -1;
     for (int draw = 0; draw < hypotheses; ++draw) {
         Eigen::Matrix3d model, measured;
         for (int c = 0; c < 3; ++c) {
@@ -79,14 +84,16 @@ std::vector<Pair> sample_consensus(const std::vector<Pair>& pairs, int hypothese
             measured.col(c) = pair.point_in_camera;
         }
         const Eigen::Isometry3d camera_from_object(Eigen::umeyama(model, measured, false));
-        std::vector<Pair> support;
-        for (const Pair& pair : pairs) {
-            const Eigen::Vector3d moved = camera_from_object * pair.point_in_object;
-            if ((moved - pair.point_in_camera).norm() <= max_distance_m) support.push_back(pair);
-        }
-        if (support.size() > best.size()) best = support;
+        int count = 0;
+        for (const Pair& pair : pairs) count += supports(camera_from_object, pair);
+        if (count <= best_count) continue;
+        best_count = count;
+        best = camera_from_object;
     }
-    return best;
+    std::vector<Pair> supporting;
+    for (const Pair& pair : pairs)
+        if (supports(best, pair)) supporting.push_back(pair);
+    return supporting;
 }
 
 }  // namespace nearpose::bench::naive

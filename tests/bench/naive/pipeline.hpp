@@ -11,8 +11,8 @@
 
 namespace nearpose::bench::naive {
 
-// The points that a pose is judged by are thinned to as many as nearpose's own views have: without that, the views of
-// 160 x 120 rays would make every later step some ten times as slow again.
+// The seen points are thinned to 500 (nearpose's own views have 230 to 470 on the approach): with all of the 2,700 to
+// 8,500 that 160 x 120 rays give, every later step would be ten times as slow again.
 struct RegistrationOptions {
     int rounds = 3;
     int hypotheses = 200;          // of the sample consensus; 0: none
