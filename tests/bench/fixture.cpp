@@ -1,5 +1,8 @@
 #include "tests/bench/fixture.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "apps/simulate/parts.hpp"
 #include "apps/simulate/recording.hpp"
 #include "core/method.hpp"

@@ -1,5 +1,6 @@
 // What a tracked frame costs by the number of particles, of triangles and of observed points; and the memory that it
 // takes, which holds for the process: run.sh runs each size of mesh in one of its own.
+#include <cmath>
 #include <fstream>
 #include <string>
 
@@ -48,13 +49,13 @@ void by_particles(benchmark::State& state) {
 
 // Sizes of the mesh by name, in triangles of about so many thousands.
 void by_triangles(benchmark::State& state) {
-    constexpr float kCoarse_m = 0.0105F;  // leaves about 2,000 of the part's 11,818 triangles
+    constexpr std::size_t kCoarse = 2000;
     const auto thousands = state.range(0);
     Approach approach;
     std::shared_ptr<const ViewGenerator> views;
     double triangles = 0.0;
     {
-        Mesh mesh = thousands < 11 ? coarsen(engine_block(), kCoarse_m) : Mesh(engine_block());
+        Mesh mesh = thousands < 11 ? coarsen(engine_block(), kCoarse) : Mesh(engine_block());
         approach = make_approach(mesh, kFrames);  // a finer mesh is the same surface
         const int side = static_cast<int>(std::lround(std::sqrt(static_cast<double>(thousands) / 11.818)));
         if (side > 1) mesh = tessellate(mesh, side);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <map>
@@ -11,6 +12,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace {
@@ -40,7 +42,7 @@ struct Result {
 };
 
 struct Table {
-    std::vector<Result> results;  // in the order of their first appearance
+    std::vector<Result> results;
 
     Result& named(const std::string& name) {
         for (Result& result : results)
@@ -80,6 +82,17 @@ void read(const std::string& file, Table& table) {
             if (equals != std::string::npos) result.words[word.substr(0, equals)] = word.substr(equals + 1);
         }
     }
+}
+
+// Interleaved repetitions come in any order: by name, numbers at its end by size.
+void sort(Table& table) {
+    const auto key = [](const Result& result) {
+        const std::size_t slash = result.name.rfind('/') + 1;
+        const double number = std::strtod(result.name.c_str() + slash, nullptr);
+        return std::tuple(result.name.substr(0, slash), number, result.name);
+    };
+    std::sort(table.results.begin(), table.results.end(),
+              [&](const Result& a, const Result& b) { return key(a) < key(b); });
 }
 
 std::string text(const char* format, double value) {
@@ -185,6 +198,7 @@ int main(int argc, char** argv) {
             else
                 read(argv[k], table);
         }
+        sort(table);
         const bool met = print(table);
         return check && !met ? 1 : 0;
     } catch (const std::exception& error) {

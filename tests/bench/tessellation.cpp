@@ -1,9 +1,30 @@
 #include "tests/bench/tessellation.hpp"
 
-#include <cmath>
+#include <array>
 #include <map>
 
 namespace nearpose::bench {
+namespace {
+
+Mesh cluster(const Mesh& mesh, float cell_m) {
+    std::map<std::array<int, 3>, int> cells;
+    std::vector<int> place;
+    Mesh coarse;
+    for (const Eigen::Vector3f& vertex : mesh.vertices_in_object) {
+        const Eigen::Vector3i cell = (vertex / cell_m).array().round().cast<int>();
+        const auto [entry, is_new] =
+            cells.try_emplace({cell.x(), cell.y(), cell.z()}, static_cast<int>(coarse.vertices_in_object.size()));
+        if (is_new) coarse.vertices_in_object.push_back(vertex);
+        place.push_back(entry->second);
+    }
+    for (const auto& triangle : mesh.triangles)
+        coarse.triangles.push_back({place[static_cast<std::size_t>(triangle[0])],
+                                    place[static_cast<std::size_t>(triangle[1])],
+                                    place[static_cast<std::size_t>(triangle[2])]});
+    return clean(std::move(coarse), "coarsening");
+}
+
+}  // namespace
 
 Mesh tessellate(const Mesh& mesh, int side) {
     Mesh fine;
@@ -27,22 +48,12 @@ Mesh tessellate(const Mesh& mesh, int side) {
     return clean(std::move(fine), "tessellation");
 }
 
-Mesh coarsen(const Mesh& mesh, float cell_m) {
-    std::map<std::array<int, 3>, int> cells;
-    std::vector<int> place;
-    Mesh coarse;
-    for (const Eigen::Vector3f& vertex : mesh.vertices_in_object) {
-        const Eigen::Vector3i cell = (vertex / cell_m).array().round().cast<int>();
-        const auto [entry, is_new] =
-            cells.try_emplace({cell.x(), cell.y(), cell.z()}, static_cast<int>(coarse.vertices_in_object.size()));
-        if (is_new) coarse.vertices_in_object.push_back(vertex);
-        place.push_back(entry->second);
-    }
-    for (const auto& triangle : mesh.triangles)
-        coarse.triangles.push_back({place[static_cast<std::size_t>(triangle[0])],
-                                    place[static_cast<std::size_t>(triangle[1])],
-                                    place[static_cast<std::size_t>(triangle[2])]});
-    return clean(std::move(coarse), "coarsening");
+Mesh coarsen(const Mesh& mesh, std::size_t max_triangles) {
+    constexpr float kFirstCell_m = 0.002F, kGrowth = 1.05F;
+    Mesh coarse = mesh;
+    for (float cell_m = kFirstCell_m; coarse.triangles.size() > max_triangles; cell_m *= kGrowth)
+        coarse = cluster(mesh, cell_m);
+    return coarse;
 }
 
 }  // namespace nearpose::bench

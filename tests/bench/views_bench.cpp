@@ -1,4 +1,6 @@
 // Views of a swarm: ours, the bare Embree calls for the same rays, and single rays of 160 x 120 pixels.
+#include <algorithm>
+
 #include "tests/bench/described.hpp"
 #include "tests/bench/fixture.hpp"
 #include "tests/bench/naive/embree_rays.hpp"
