@@ -37,5 +37,5 @@ if [[ $quick -eq 0 ]]; then
     for scale in particles image_width; do run "$scale" 1 "^scale/$scale/"; done
     for thousands in 2 12 106 957; do run "triangles-$thousands" 1 "^scale/thousand_triangles/$thousands/"; done
 fi
-"$build/tests/bench/nearpose_bench_table" "${check[@]}" "$out"/*.json
 echo "results: $out" >&2
+"$build/tests/bench/nearpose_bench_table" "${check[@]}" "$out"/*.json

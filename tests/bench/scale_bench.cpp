@@ -44,7 +44,7 @@ void by_particles(benchmark::State& state) {
     measure(state, make_approach(engine_block(), kFrames), std::make_shared<EmbreeViewGenerator>(engine_block()),
             static_cast<int>(state.range(0)));
     state.counters["x"] = static_cast<double>(state.range(0));
-    state.SetLabel("unit=frame exponent_most=1.05");
+    state.SetLabel("unit=frame exponent_most=1.1");
 }
 
 // Sizes of the mesh by name, in triangles of about so many thousands.
