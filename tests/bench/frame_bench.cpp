@@ -1,6 +1,5 @@
 // End to end: the frames of an approach after the first one, from depth image to pose, on 200 particles of 3 rounds.
 #include <algorithm>
-#include <ctime>
 
 #include "tests/bench/described.hpp"
 #include "tests/bench/naive/pipeline.hpp"
@@ -11,13 +10,6 @@ namespace {
 
 constexpr int kParticles = 200;
 constexpr int kTracked = kApproachFrames - 1;
-
-// CPU time of all threads so far [s].
-double process_cpu_s() {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 // Of the centre of the part's box [mm].
 double error_mm(const Pose& found, const Frame& frame, const Eigen::Vector3d& centre) {
