@@ -29,6 +29,8 @@ forbid 'raycast/|apps/' 'optim looks at raycast or apps' "${optim[@]}"
 forbid 'tests/' 'the product looks at its tests' "${core[@]}" "${raycast[@]}" "${optim[@]}" "${apps[@]}"
 forbid 'embree|assimp|flann|ceres/|omp\.h' 'a header that is installed includes a heavy library' "${headers[@]}"
 forbid 'embree|assimp|ceres/' 'a heavy library outside its folder' "${core[@]}" "${apps[@]}"
+forbid 'optim/|raycast/embree|core/(correspondence|estimator|fine_fit|gradient_step|likelihood|observation|point_index)' \
+    'a naive baseline uses what is compared with it' $(files tests/bench/naive)
 forbid 'ceres/|flann|omp\.h' 'a heavy library outside its folder' "${raycast[@]}"
 forbid 'embree|assimp|flann|omp\.h' 'a heavy library outside its folder' "${optim[@]}"
 forbid 'flann|omp\.h' 'a heavy library outside its folder' "${apps[@]}"

@@ -1,0 +1,27 @@
+// The default estimator on a simulated approach.
+#pragma once
+
+#include <memory>
+
+#include "core/estimator.hpp"
+#include "tests/bench/fixture.hpp"
+
+namespace nearpose::bench {
+
+// The default method with a fixed number of particles and three rounds each.
+inline PoseEstimator make_estimator(std::shared_ptr<const ViewGenerator> views, int num_particles, int num_threads) {
+    EstimatorOptions options;
+    options.num_particles = num_particles;
+    options.num_threads = num_threads;
+    return PoseEstimator(std::move(views), std::make_shared<CeresPoseSolver>(), options);
+}
+
+// Reading the image counts: the observation is prepared here.
+inline UpdateResult track(PoseEstimator& estimator, const Approach& approach, int k) {
+    const Frame& frame = approach.frames[static_cast<std::size_t>(k)];
+    std::optional<Pose> now_from_before;
+    if (k > 0) now_from_before = approach.now_from_before(k);
+    return estimator.update(make_observation(frame.depth, approach.camera, frame.mask), now_from_before);
+}
+
+}  // namespace nearpose::bench
