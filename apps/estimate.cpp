@@ -57,6 +57,10 @@ Symmetries choose_symmetries(const EstimateOptions& options, const Mesh& mesh, c
     return symmetries;
 }
 
+Tolerance tolerance_of(const EstimateOptions& options) {
+    return {1e-3 * options.tolerance_mm, options.tolerance_deg * std::numbers::pi / 180.0};
+}
+
 PoseEstimator start_estimator(const EstimateOptions& options, const Mesh& mesh, const SharedOptions& shared) {
     EstimatorSetup setup;
     setup.method = options.method;
@@ -65,7 +69,7 @@ PoseEstimator start_estimator(const EstimateOptions& options, const Mesh& mesh, 
     setup.threads = options.threads;
     setup.seed = options.seed;
     setup.symmetries = choose_symmetries(options, mesh, shared);
-    setup.tolerance = {1e-3 * options.tolerance_mm, options.tolerance_deg * std::numbers::pi / 180.0};
+    setup.tolerance = tolerance_of(options);
     PoseEstimator made = make_estimator(setup, make_view_generator(setup, mesh));
     if (!options.initial_pose.empty()) {
         made.reset(read_pose_file(options.initial_pose),
@@ -82,7 +86,8 @@ RunDescription describe(const EstimateOptions& options, const FrameSource& sourc
             source.scene_id(),
             options.model.object,
             options.particles,
-            options.seed};
+            options.seed,
+            tolerance_of(options)};
 }
 
 // What the frames lack for what was asked, before hours are spent.

@@ -26,11 +26,17 @@ struct EvaluateOptions {
     std::optional<int> scene_id, mask_index, first, last;
     int burn_in = evaluation::SummaryOptions{}.burn_in;
     double within_mm = 10.0, within_deg = 5.0;
+    std::optional<double> tolerance_mm, tolerance_deg;  // of the verdicts; none: the log's, else the estimation's usual
 };
 
 void check(const EvaluateOptions& options) {
     if (!options.calibration.empty() && options.log.empty()) {
         throw BadUse("--calibration needs the covariances: give the log of the estimation with --log");
+    }
+    if ((options.tolerance_mm || options.tolerance_deg) && options.log.empty()) {
+        throw BadUse(
+            "--tolerance-mm and --tolerance-deg judge verdicts: give the log of the estimation, which has them, "
+            "with --log");
     }
     const std::array<const std::filesystem::path*, 5> files = {&options.out, &options.json, &options.plot,
                                                                &options.curves, &options.calibration};
@@ -101,6 +107,21 @@ void write_trajectories(const std::filesystem::path& folder, const evaluation::S
     poses.close();
 }
 
+// What is asked for, else what the log states, else what `nearpose estimate` takes by itself.
+Tolerance tolerance_of(const EvaluateOptions& options, const evaluation::Estimates& estimates, bool quiet) {
+    const bool one_missing = !options.tolerance_mm || !options.tolerance_deg;
+    if (one_missing && !estimates.tolerance && !estimates.verdicts.empty()) {
+        print_notice(options.log.string() +
+                         ": does not state the verdicts' tolerance; where --tolerance-mm or --tolerance-deg is not "
+                         "given, 2 mm and 1 deg are taken",
+                     quiet);
+    }
+    Tolerance tolerance = estimates.tolerance.value_or(Tolerance{});
+    if (options.tolerance_mm) tolerance.translation_m = 1e-3 * *options.tolerance_mm;
+    if (options.tolerance_deg) tolerance.rotation_rad = *options.tolerance_deg / kDegrees;
+    return tolerance;
+}
+
 int evaluate(const EvaluateOptions& options, const SharedOptions& shared) {
     check(options);
     data_set::SceneOptions which;
@@ -122,18 +143,24 @@ int evaluate(const EvaluateOptions& options, const SharedOptions& shared) {
     evaluation::SummaryOptions limits;
     limits.burn_in = options.burn_in;
     limits.coarse = {1e-3 * options.within_mm, options.within_deg / kDegrees};
+    limits.tolerance = tolerance_of(options, estimates, shared.quiet);
     const evaluation::RunSummary summary = evaluation::summarise(frames, shape.info.diameter_m, limits);
     const evaluation::SummaryHeading heading{options.scene.string(), options.results.string(), truth.scene.id,
                                              options.object, shape.info.diameter_m};
-    write_text(options.out, evaluation::table_of(frames));
-    write_text(options.json, evaluation::summary_json(heading, frames, summary, limits));
+    // Which verdicts are wrong is a column of the table where there are verdicts.
+    const std::optional<Tolerance> judged =
+        summary.verdicts.frames > 0 ? std::optional(limits.tolerance) : std::nullopt;
+    const std::string table = evaluation::table_of(frames, judged);
+    const std::string json = evaluation::summary_json(heading, frames, summary, limits);
+    write_text(options.out, table);
+    write_text(options.json, json);
     if (!options.plot.empty()) write_error_plot(options, frames);
     write_curves(options, truth, frames);
     if (!options.trajectories.empty()) write_trajectories(options.trajectories, truth, estimates, shape);
     if (options.out == "-") {
-        print(evaluation::table_of(frames));
+        print(table);
     } else if (options.json == "-") {
-        print(evaluation::summary_json(heading, frames, summary, limits));
+        print(json);
     } else {
         print(evaluation::summary_text(heading, frames, summary, limits));
     }
@@ -154,7 +181,8 @@ void add_evaluate_command(CLI::App& app, const SharedOptions& shared, Run& run) 
     command->add_option("--models", options->models, "Folder of BOP models with models_info.json")->required();
     command->add_option("--object", options->object, "Number of the object");
     command->add_option("--results", options->results, "BOP result file")->required();
-    command->add_option("--log", options->log, "Log of the same estimation, for covariances and predicted frames");
+    command->add_option("--log", options->log,
+                        "Log of the same estimation, for covariances, verdicts and predicted frames");
     command
         ->add_option("--mask-index", options->mask_index, "Of several copies, that at this index of the frame's list")
         ->check(CLI::Range(0, 999'999));
@@ -165,13 +193,21 @@ void add_evaluate_command(CLI::App& app, const SharedOptions& shared, Run& run) 
         ->check(CLI::NonNegativeNumber);
     command->add_option("--within-mm", options->within_mm, "Limit of arrival [mm]")->check(CLI::PositiveNumber);
     command->add_option("--within-deg", options->within_deg, "Limit of arrival [deg]")->check(CLI::PositiveNumber);
+    command
+        ->add_option("--tolerance-mm", options->tolerance_mm,
+                     "An accepted pose is a false accept beyond this [mm] [what the log states, else 2]")
+        ->check(CLI::PositiveNumber);
+    command->add_option("--tolerance-deg", options->tolerance_deg, "Or beyond this [deg] [what the log states, else 1]")
+        ->check(CLI::PositiveNumber);
     command->add_option("--out", options->out, "Table of errors to write, a row a frame; - instead of the summary");
     command->add_option("--json", options->json, "All figures as JSON to write; - instead of the summary");
     command->add_option("--plot", options->plot, "Picture of errors over frames to write (PNG)");
     command->add_option("--curves", options->curves,
                         "Picture of errors over distance, visible volume and visible fraction to write (PNG)");
-    command->add_option("--calibration", options->calibration,
-                        "Picture of how often the truth lies inside the p-region of the covariance to write (PNG)");
+    command->add_option(
+        "--calibration", options->calibration,
+        "Picture of how often the truth lies inside the covariance's p-region, against p and against distance, "
+        "to write (PNG)");
     command->add_option("--trajectory-out", options->trajectories,
                         "Folder for truth.tum and poses.tum with equal stamps, of the centre of the box, for evo");
     command->callback([options, &shared, &run] { run = [options, &shared] { return evaluate(*options, shared); }; });

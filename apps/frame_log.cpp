@@ -123,7 +123,9 @@ std::string first_log_line(const RunDescription& run) {
          {"views", run.views},
          {"method", run.method},
          {"particles", run.particles},
-         {"seed", run.seed}});
+         {"seed", run.seed},
+         {"tolerance_m", run.tolerance.translation_m},
+         {"tolerance_rad", run.tolerance.rotation_rad}});
 }
 
 std::string first_particles_line() {

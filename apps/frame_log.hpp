@@ -14,6 +14,7 @@ struct RunDescription {
     int scene_id = 0, object_id = 0;
     int particles = 0;
     std::uint64_t seed = 0;
+    Tolerance tolerance = {};  // of the verdicts
 };
 
 struct FrameReport {

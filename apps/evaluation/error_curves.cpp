@@ -1,11 +1,14 @@
 #include "apps/evaluation/error_curves.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <numbers>
 
+#include "apps/data_set/number_text.hpp"
+#include "apps/evaluation/coverage.hpp"
 #include "apps/evaluation/run_summary.hpp"
 
 namespace nearpose::evaluation {
@@ -72,12 +75,37 @@ Curve shares_below(const std::string& label, const std::vector<double>& probabil
     return curve;
 }
 
-}  // namespace
-
-double chi_square_of_6(double squared) {
-    const double half = 0.5 * squared;
-    return 1.0 - std::exp(-half) * (1.0 + half + 0.5 * half * half);
+// Share of the frames inside the region of one level, over the middles of the bins; the band of 90 % is its interval.
+Curve coverage_curve(const std::vector<CoverageBin>& bins, std::size_t level) {
+    const double probability = kCoverageLevels.at(level);
+    Curve curve{data_set::format_number(100.0 * probability) + " % region", {}};
+    for (const CoverageBin& bin : bins) {
+        const int frames = bin.coverage.frames;
+        const Interval share = proportion(bin.coverage.inside.at(level), frames);
+        const bool with_band = probability == 0.9;
+        curve.bins.push_back({1e3 * 0.5 * (bin.from_m + bin.to_m), frames, share.value,
+                              with_band ? share.low : share.value, with_band ? share.high : share.value, share.high});
+    }
+    return curve;
 }
+
+pictures::CurvePlot coverage_plot(const std::vector<CoverageBin>& bins) {
+    constexpr std::array<std::size_t, 3> kOrder = {1, 0, 2};  // 90 % first: its colour and band stand out
+    static_assert(kOrder.size() == kCoverageLevels.size());
+    pictures::CurvePlot plot;
+    plot.title = "share of the frames with the truth inside the region, by distance";
+    plot.x_title = abscissas().front().title;
+    plot.y_title = "share of the frames";
+    plot.y_is_share = true;
+    plot.target = {kLeastCoverageOf90, kMostCoverageOf90, "aim of the 90 % region: 85 to 95 %"};
+    for (const std::size_t level : kOrder) {
+        plot.curves.push_back(coverage_curve(bins, level));
+        plot.nominal.push_back(kCoverageLevels.at(level));
+    }
+    return plot;
+}
+
+}  // namespace
 
 std::vector<pictures::CurvePlot> error_curves(const std::vector<FrameErrors>& frames) {
     std::vector<pictures::CurvePlot> plots;
@@ -120,7 +148,9 @@ std::vector<pictures::CurvePlot> calibration_curves(const std::vector<FrameError
         const std::vector<double> of_band = probabilities(band.low_m, band.high_m, false);
         if (!of_band.empty()) plot.curves.push_back(shares_below(band.label, of_band, false));
     }
-    return {plot};
+    const std::vector<CoverageBin> bins = coverage_by_distance(frames);
+    if (bins.empty()) return {plot};
+    return {plot, coverage_plot(bins)};
 }
 
 }  // namespace nearpose::evaluation

@@ -12,11 +12,9 @@ namespace nearpose::evaluation {
 // where it is known. Frames without a pose or visibility give nothing. Empty where none is left.
 std::vector<pictures::CurvePlot> error_curves(const std::vector<FrameErrors>& frames);
 
-// Share of the frames in which the truth lies inside the region that should hold a share p of it, against p: for all
-// frames (its band is the 95 % interval) and by distance. Empty where no frame has a covariance.
+// Share of the frames in which the truth lies inside the region that should hold a share p of it: against p, for all
+// frames (its band is the 95 % interval) and by distance; then of the 50, 90 and 99 % regions against the distance
+// [mm], where that is known of a frame. Empty where no frame has a covariance.
 std::vector<pictures::CurvePlot> calibration_curves(const std::vector<FrameErrors>& frames);
-
-// The chance that chi-square of 6 degrees of freedom is below `squared`.
-double chi_square_of_6(double squared);
 
 }  // namespace nearpose::evaluation

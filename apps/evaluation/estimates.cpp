@@ -53,9 +53,34 @@ bool is_same(const Pose& a, const Pose& b) {
     return (a.translation - b.translation).norm() < 1e-6 && angle_between(a.rotation, b.rotation) < 1e-6;
 }
 
+Verdict verdict_of(const data_set::JsonValue& value) {
+    const std::string text = value.text();
+    std::string known;
+    for (const Verdict verdict : {Verdict::kAccept, Verdict::kContinue, Verdict::kLost}) {
+        if (text == to_string(verdict)) return verdict;
+        known += (known.empty() ? "" : ", ") + std::string(to_string(verdict));
+    }
+    throw value.error("is \"" + text + "\", but must be one of " + known);
+}
+
+void read_first_line(const data_set::JsonValue& line, Estimates& estimates) {
+    if (!line.is_object() || !line.find("content") || line.at("content").text() != "nearpose estimate" ||
+        line.at("format").integer() != 1) {
+        throw line.error("is not the first line of a log of nearpose estimate");
+    }
+    if (!line.find("tolerance_m") && !line.find("tolerance_rad")) return;
+    const auto positive = [&](const char* key) {
+        const double value = line.at(key).number();
+        if (!(value > 0.0)) throw line.at(key).error("must be above 0");
+        return value;
+    };
+    estimates.tolerance = Tolerance{positive("tolerance_m"), positive("tolerance_rad")};
+}
+
 void add_line(const data_set::JsonValue& line, const std::string& results, Estimates& estimates) {
     const data_set::JsonValue frame = line.at("frame");
     const std::string status = line.at("status").text();
+    if (const auto verdict = line.find("verdict")) estimates.verdicts[frame.integer()] = verdict_of(*verdict);
     const auto estimate = estimates.of_frame.find(frame.integer());
     if (estimate == estimates.of_frame.end() || !line.find("covariance")) return;
     if (!is_same(logged_pose(line), estimate->second.camera_from_object)) {
@@ -112,9 +137,8 @@ void add_log(const std::filesystem::path& log_jsonl, Estimates& estimates) {
         const data_set::JsonFile json = data_set::JsonFile::from_text(std::string(line), name);
         if (number > 1) {
             add_line(json.root(), estimates.results.string(), estimates);
-        } else if (!json.root().is_object() || !json.root().find("content") ||
-                   json.root().at("content").text() != "nearpose estimate" || json.root().at("format").integer() != 1) {
-            throw json.root().error("is not the first line of a log of nearpose estimate");
+        } else {
+            read_first_line(json.root(), estimates);
         }
     }
     if (number == 0) throw std::runtime_error(log_jsonl.string() + ": is empty");
@@ -127,7 +151,10 @@ std::vector<FrameErrors> errors_of(const SceneTruth& truth, const Estimates& est
         const auto found = estimates.of_frame.find(truth.frames[index].frame_id);
         std::optional<EstimatedFrame> estimate;
         if (found != estimates.of_frame.end()) estimate = found->second;
-        frames[index] = frame_errors(truth.frames[index], estimate, shape, truth.images[index].camera);
+        FrameErrors& frame = frames[index];
+        frame = frame_errors(truth.frames[index], estimate, shape, truth.images[index].camera);
+        const auto verdict = estimates.verdicts.find(frame.frame_id);
+        if (verdict != estimates.verdicts.end()) frame.verdict = verdict->second;
     });
     return frames;
 }

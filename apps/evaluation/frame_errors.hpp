@@ -90,10 +90,11 @@ struct FrameErrors {
 FrameErrors frame_errors(const TrueFrame& truth, const std::optional<EstimatedFrame>& estimate, const ModelShape& shape,
                          const PinholeCamera& camera);
 
-// A CSV table, a row a frame, millimetres and degrees; what it does not know is left empty. Reading gives back what was
-// written to the digits that were written, and takes tables from before there were verdicts; throws std::runtime_error
-// naming file, line and column.
-std::string table_of(const std::vector<FrameErrors>& frames);
+// A CSV table, a row a frame, millimetres and degrees; what it does not know is left empty. With a tolerance a last
+// column tells which verdicts are wrong by it: false_accept, missed (verdict_counts.hpp). Reading gives back what was
+// written to the digits that were written, but for that column, and takes tables from before there were verdicts;
+// throws std::runtime_error naming file, line and column.
+std::string table_of(const std::vector<FrameErrors>& frames, const std::optional<Tolerance>& tolerance = std::nullopt);
 std::vector<FrameErrors> read_table(const std::filesystem::path& csv);
 
 }  // namespace nearpose::evaluation

@@ -9,6 +9,7 @@
 #include "apps/data_set/text_split.hpp"
 #include "apps/degrees.hpp"
 #include "apps/evaluation/frame_errors.hpp"
+#include "apps/evaluation/verdict_counts.hpp"
 
 namespace nearpose::evaluation {
 namespace {
@@ -75,7 +76,7 @@ constexpr std::array kVerdicts = {"accept", "continue", "lost"};
 constexpr std::array kShown = {"part", "nothing", "nonsense"};
 
 constexpr std::size_t kFirst = 2;  // columns before those of numbers
-constexpr std::size_t kOldFields = kFirst + kColumns.size(), kFields = kOldFields + 3;
+constexpr std::size_t kOldFields = kFirst + kColumns.size(), kFields = kOldFields + 3, kJudgedFields = kFields + 1;
 
 // Of tables from before there were verdicts.
 std::string old_header() {
@@ -86,6 +87,16 @@ std::string old_header() {
 
 std::string header() {
     return old_header() + ",verdict,shown,part_moved";
+}
+
+// Of tables that say which verdicts are wrong.
+std::string judged_header() {
+    return header() + ",verdict_error";
+}
+
+std::string verdict_error(const FrameErrors& frame, const Tolerance& tolerance) {
+    if (is_false_accept(frame, tolerance)) return "false_accept";
+    return is_missed(frame, tolerance) ? "missed" : "";
 }
 
 // A cell of the file, with what is needed to say where it is.
@@ -156,14 +167,14 @@ FrameErrors frame_of(const std::filesystem::path& path, std::size_t line, std::s
         if (value == nullptr) throw cell.error("is given, but not what it belongs to");
         *value = cell.number() / column.units;
     }
-    if (num_fields == kFields) read_words(path, line, fields, frame);
+    if (num_fields != kOldFields) read_words(path, line, fields, frame);
     return frame;
 }
 
 }  // namespace
 
-std::string table_of(const std::vector<FrameErrors>& frames) {
-    std::string table = header() + "\n";
+std::string table_of(const std::vector<FrameErrors>& frames, const std::optional<Tolerance>& tolerance) {
+    std::string table = (tolerance ? judged_header() : header()) + "\n";
     for (FrameErrors frame : frames) {
         table += std::to_string(frame.frame_id) + (frame.predicted ? ",1" : ",0");
         for (const Column& column : kColumns) {
@@ -173,7 +184,9 @@ std::string table_of(const std::vector<FrameErrors>& frames) {
         }
         table += std::string(",") + (frame.verdict ? kVerdicts.at(static_cast<std::size_t>(*frame.verdict)) : "");
         table += std::string(",") + kShown.at(static_cast<std::size_t>(frame.shown));
-        table += frame.part_moved ? ",1\n" : ",0\n";
+        table += frame.part_moved ? ",1" : ",0";
+        if (tolerance) table += "," + verdict_error(frame, *tolerance);
+        table += "\n";
     }
     return table;
 }
@@ -187,6 +200,8 @@ std::vector<FrameErrors> read_table(const std::filesystem::path& csv) {
             frames.push_back(frame_of(csv, number, line, num_fields));
         } else if (line == old_header()) {
             num_fields = kOldFields;
+        } else if (line == judged_header()) {
+            num_fields = kJudgedFields;
         } else if (line != header()) {
             throw std::runtime_error(csv.string() + ": line 1: is not the header of a table of frames");
         }

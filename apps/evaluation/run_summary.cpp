@@ -116,6 +116,8 @@ void summarise_covariances(const Frames& frames, RunSummary& summary) {
     for (const FrameErrors& frame : frames) {
         if (frame.errors && frame.errors->mahalanobis_squared) ++summary.frames_with_covariance;
     }
+    summary.coverage = coverage_of(frames);
+    summary.coverage_by_distance = coverage_by_distance(frames);
     summary.inside_90 = share_inside(frames, &PoseErrors::mahalanobis_squared, kChiSquare90Of6);
     summary.inside_90_rotation = share_inside(frames, &PoseErrors::mahalanobis_rotation_squared, kChiSquare90Of3);
     summary.inside_90_translation = share_inside(frames, &PoseErrors::mahalanobis_translation_squared, kChiSquare90Of3);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/evaluation/coverage.hpp"
 #include "apps/evaluation/frame_errors.hpp"
 #include "apps/evaluation/verdict_counts.hpp"
 
@@ -65,6 +66,8 @@ struct RunSummary {
     std::optional<double> inside_90;
     std::optional<double> inside_90_rotation, inside_90_translation;  // the same of either part
     int frames_with_covariance = 0;                                   // that these are shares of
+    Coverage coverage;                              // of the same frames: the regions of 50, 90 and 99 %
+    std::vector<CoverageBin> coverage_by_distance;  // of those of them whose distance is known
     Statistics time_ms;
 };
 RunSummary summarise(const std::vector<FrameErrors>& frames, double model_diameter_m, const SummaryOptions& options);

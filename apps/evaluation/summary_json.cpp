@@ -1,6 +1,8 @@
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "apps/data_set/number_text.hpp"
 #include "apps/evaluation/summary_text.hpp"
 
 namespace nearpose::evaluation {
@@ -37,6 +39,44 @@ Json json_of(const Arrival& arrival, const ErrorLimit& limit, const std::vector<
             {"stays", arrival.stays()}};
 }
 
+Json json_of(const Coverage& coverage) {
+    Json json = {{"frames", coverage.frames}};
+    for (std::size_t level = 0; level < kCoverageLevels.size(); ++level) {
+        const std::string name = "inside_" + data_set::format_number(100.0 * kCoverageLevels[level]);
+        json[name] = coverage.frames > 0 ? Json(coverage.share(level)) : Json(nullptr);
+    }
+    if (coverage.frames == 0) return json;
+    const Interval of_90 = proportion(coverage.inside[1], coverage.frames);
+    json["inside_90_interval_95"] = {of_90.low, of_90.high};
+    return json;
+}
+
+Json json_of(const std::vector<CoverageBin>& bins) {
+    Json list = Json::array();
+    const auto rounded = [](double value_m) { return std::round(1e9 * value_m) / 1e6; };  // to a nanometre, in mm
+    for (const CoverageBin& bin : bins) {
+        Json json = {{"from_mm", rounded(bin.from_m)}, {"to_mm", rounded(bin.to_m)}};
+        json.update(json_of(bin.coverage));
+        list.push_back(json);
+    }
+    return list;
+}
+
+// null where no frame has a verdict.
+Json json_of(const VerdictCounts& counts, const Tolerance& tolerance, const std::vector<FrameErrors>& frames) {
+    if (counts.frames == 0) return nullptr;
+    const std::optional<int>& first = counts.first_right_accept;
+    return {{"frames", counts.frames},
+            {"accept", counts.accepts},
+            {"continue", counts.continues},
+            {"lost", counts.lost},
+            {"false_accepts", counts.false_accepts},
+            {"missed", counts.missed},
+            {"first_right_accept_frame", first ? Json(frames[static_cast<std::size_t>(*first)].frame_id) : nullptr},
+            {"tolerance_mm", 1e3 * tolerance.translation_m},
+            {"tolerance_deg", 180.0 / std::numbers::pi * tolerance.rotation_rad}};
+}
+
 }  // namespace
 
 std::string summary_json(const SummaryHeading& heading, const std::vector<FrameErrors>& frames,
@@ -71,6 +111,9 @@ std::string summary_json(const SummaryHeading& heading, const std::vector<FrameE
     json["inside_90"] = json_of(summary.inside_90);
     json["inside_90_rotation"] = json_of(summary.inside_90_rotation);
     json["inside_90_translation"] = json_of(summary.inside_90_translation);
+    json["coverage"] = json_of(summary.coverage);
+    json["coverage_by_distance"] = json_of(summary.coverage_by_distance);
+    json["verdicts"] = json_of(summary.verdicts, options.tolerance, frames);
     json["time_ms"] = json_of(summary.time_ms);
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

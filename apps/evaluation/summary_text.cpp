@@ -59,15 +59,15 @@ std::string areas_text(const RunSummary& summary, double model_diameter_m) {
            percent(summary.add_s_auc_diameter) + " (to " + tenth + " mm)\n";
 }
 
-std::string limit_name(const ErrorLimit& limit) {
+std::string limit_name(double translation_m, double rotation_rad) {
     // Six digits drop what the way to radians and back left behind.
     const auto rounded = [](double value) { return format_number(std::round(value * 1e6) / 1e6); };
-    return rounded(1e3 * limit.translation_m) + " mm and " + rounded(kDegrees * limit.rotation_rad) + " deg";
+    return rounded(1e3 * translation_m) + " mm and " + rounded(kDegrees * rotation_rad) + " deg";
 }
 
 std::string arrival_text(const std::vector<FrameErrors>& frames, const ErrorLimit& limit, const Arrival& arrival) {
     const auto frame_of = [&](int index) { return std::to_string(frames[static_cast<std::size_t>(index)].frame_id); };
-    const std::string name = "within " + limit_name(limit) + ": ";
+    const std::string name = "within " + limit_name(limit.translation_m, limit.rotation_rad) + ": ";
     if (!arrival.first_index) return name + "never\n";
     const std::string text = name + "first in frame " + frame_of(*arrival.first_index);
     if (!arrival.holds_from) return text + ", but not in the last frame\n";
@@ -93,6 +93,45 @@ std::string covariance_text(const RunSummary& summary) {
     return text + "\n";
 }
 
+std::string coverage_row(const std::string& label, const Coverage& coverage) {
+    std::string text = labelled("  " + label);
+    for (std::size_t level = 0; level < kCoverageLevels.size(); ++level) text += padded(percent(coverage.share(level)));
+    const Interval of_90 = proportion(coverage.inside[1], coverage.frames);
+    return text + padded(std::to_string(coverage.frames)) + "   " + percent(of_90.low) + " to " + percent(of_90.high) +
+           "\n";
+}
+
+// A table by distance, of the frames after the burn-in.
+std::string coverage_text(const RunSummary& summary) {
+    if (summary.coverage_by_distance.empty()) return "";
+    std::string text = labelled("inside the region of");
+    for (const double level : kCoverageLevels) text += padded(format_number(100.0 * level) + " %");
+    text += padded("frames") + "   of 90 %: 95 % interval\n";
+    for (const CoverageBin& bin : summary.coverage_by_distance) {
+        text += coverage_row(format_fixed(1e3 * bin.from_m, 0) + " to " + format_fixed(1e3 * bin.to_m, 0) + " mm",
+                             bin.coverage);
+    }
+    return text + coverage_row("all distances", summary.coverage);
+}
+
+std::string of_some(int part, int all) {
+    return std::to_string(part) + " of " + std::to_string(all);
+}
+
+std::string verdicts_text(const RunSummary& summary, const Tolerance& tolerance) {
+    const VerdictCounts& counts = summary.verdicts;
+    if (counts.frames == 0) return "";
+    std::string text = "verdicts of " + std::to_string(counts.frames) + " frames: " + std::to_string(counts.accepts) +
+                       " accept, " + std::to_string(counts.continues) + " continue, " + std::to_string(counts.lost) +
+                       " lost; tolerance " + limit_name(tolerance.translation_m, tolerance.rotation_rad) + "\n";
+    text += "accepted but beyond the tolerance: " + of_some(counts.false_accepts, counts.accepts);
+    if (counts.accepts > 0) {
+        const Interval share = proportion(counts.false_accepts, counts.accepts);
+        text += " (95 % interval " + percent(share.low) + " to " + percent(share.high) + ")";
+    }
+    return text + "; lost though within it: " + of_some(counts.missed, counts.lost) + "\n";
+}
+
 }  // namespace
 
 std::string summary_text(const SummaryHeading& heading, const std::vector<FrameErrors>& frames,
@@ -113,7 +152,8 @@ std::string summary_text(const SummaryHeading& heading, const std::vector<FrameE
     if (summary.time_ms.count > 0) text += row("time a frame [ms]", summary.time_ms, 1);
     if (summary.translation_mm.count > 0) text += areas_text(summary, heading.model_diameter_m);
     return text + arrival_text(frames, options.coarse, summary.coarse) +
-           arrival_text(frames, options.fine, summary.fine) + lost_text(frames, summary) + covariance_text(summary);
+           arrival_text(frames, options.fine, summary.fine) + lost_text(frames, summary) + covariance_text(summary) +
+           coverage_text(summary) + verdicts_text(summary, options.tolerance);
 }
 
 }  // namespace nearpose::evaluation

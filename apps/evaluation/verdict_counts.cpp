@@ -1,13 +1,21 @@
 #include "apps/evaluation/verdict_counts.hpp"
 
 namespace nearpose::evaluation {
+namespace {
+
+bool is_right(const FrameErrors& frame, const Tolerance& tolerance) {
+    return frame.shown == Shown::kPart && frame.errors && frame.errors->translation_m <= tolerance.translation_m &&
+           frame.errors->rotation_rad <= tolerance.rotation_rad;
+}
+
+}  // namespace
 
 bool is_false_accept(const FrameErrors& frame, const Tolerance& tolerance) {
-    if (frame.verdict != Verdict::kAccept) return false;
-    const bool right = frame.shown == Shown::kPart && frame.errors &&
-                       frame.errors->translation_m <= tolerance.translation_m &&
-                       frame.errors->rotation_rad <= tolerance.rotation_rad;
-    return !right;
+    return frame.verdict == Verdict::kAccept && !is_right(frame, tolerance);
+}
+
+bool is_missed(const FrameErrors& frame, const Tolerance& tolerance) {
+    return frame.verdict == Verdict::kLost && is_right(frame, tolerance);
 }
 
 VerdictCounts count_verdicts(const std::vector<FrameErrors>& frames, const Tolerance& tolerance) {
@@ -16,7 +24,9 @@ VerdictCounts count_verdicts(const std::vector<FrameErrors>& frames, const Toler
         const FrameErrors& frame = frames[i];
         if (!frame.verdict) continue;
         ++counts.frames;
+        if (*frame.verdict == Verdict::kContinue) ++counts.continues;
         if (*frame.verdict == Verdict::kLost) ++counts.lost;
+        if (is_missed(frame, tolerance)) ++counts.missed;
         if (*frame.verdict != Verdict::kAccept) continue;
         ++counts.accepts;
         if (is_false_accept(frame, tolerance)) {

@@ -20,7 +20,8 @@ constexpr double kLeft = 104.0, kRight = 866.0;
 constexpr double kTitleHeight = 44.0, kPanelHeight = 260.0, kFootHeight = 62.0;
 constexpr double kPlotHeight = kTitleHeight + kPanelHeight + kFootHeight;
 constexpr double kTextSize = 11.0, kTitleSize = 13.0;
-constexpr Color kPaper{255, 255, 255}, kInk{40, 44, 52}, kGrid{228, 231, 236}, kFrame{150, 156, 166};
+constexpr Color kPaper{255, 255, 255}, kInk{40, 44, 52}, kGrid{228, 231, 236}, kFrame{150, 156, 166},
+    kTarget{120, 170, 60};
 
 // Told apart by colour-blind readers (Okabe and Ito 2008), those that stand out on white first.
 constexpr std::array kCurveColors = {Color{0, 114, 178},  Color{213, 94, 0},  Color{0, 158, 115}, Color{204, 121, 167},
@@ -59,6 +60,7 @@ Axis x_axis(const CurvePlot& plot) {
 Panel panel_of(const CurvePlot& plot, double top) {
     const double panel_top = top + kTitleHeight, bottom = panel_top + kPanelHeight;
     if (plot.is_share_of_share) return {panel_top, bottom, round_axis(0.0, 1.0, 10), round_axis(0.0, 1.0, 5)};
+    if (plot.y_is_share) return {panel_top, bottom, x_axis(plot), round_axis(0.0, 1.0, 5)};
     std::vector<double> drawn;
     for (const Curve& curve : plot.curves) {
         for (const CurveBin& bin : curve.bins) {
@@ -103,6 +105,28 @@ void draw_curve(Canvas& canvas, const Panel& panel, const Curve& curve, Color co
     constexpr std::size_t kMostMarks = 25;
     if (line.size() > kMostMarks) return;
     for (const Eigen::Vector2d& point : line) canvas.disc(point, 3.2, color);
+}
+
+bool is_of_shares(const CurvePlot& plot) {
+    return plot.is_share_of_share || plot.y_is_share;
+}
+
+bool has_target(const CurvePlot& plot) {
+    return plot.target.high > plot.target.low;
+}
+
+constexpr double kTargetOpacity = 0.22;
+
+// Where the curves should run.
+void draw_target(Canvas& canvas, const Panel& panel, const CurvePlot& plot) {
+    if (has_target(plot)) {
+        canvas.fill_rectangle(kLeft, panel.at(panel.x.low, plot.target.high).y(), kRight,
+                              panel.at(panel.x.low, plot.target.low).y(), kTarget, kTargetOpacity);
+    }
+    for (std::size_t i = 0; i < plot.nominal.size(); ++i) {
+        const double y = panel.at(panel.x.low, plot.nominal[i]).y();
+        canvas.polyline({{kLeft, y}, {kRight, y}}, 1.2, color_of(i), 0.6);
+    }
 }
 
 bool has_band(const Curve& curve) {
@@ -150,11 +174,14 @@ Legend legend_of(const CurvePlot& plot) {
     Legend legend;
     legend.beside = plot.curves.size() > kMostInside;
     if (std::any_of(plot.curves.begin(), plot.curves.end(), has_band))
-        legend.band = plot.is_share_of_share ? "95 % interval" : "middle half of the frames";
+        legend.band = is_of_shares(plot) ? "95 % interval" : "middle half of the frames";
+    if (plot.y_is_share && !legend.band.empty()) legend.band += ", " + plot.curves.front().label;
     double widest = Canvas::text_width(legend.band, kTextSize);
+    if (has_target(plot)) widest = std::max(widest, Canvas::text_width(plot.target.label, kTextSize));
     for (const Curve& curve : plot.curves) widest = std::max(widest, Canvas::text_width(curve.label, kTextSize));
     legend.width = kLegendSample + widest + 30.0;
-    legend.height = kLegendLine * static_cast<double>(plot.curves.size() + (legend.band.empty() ? 0 : 1)) + 8.0;
+    const std::size_t lines = plot.curves.size() + (legend.band.empty() ? 0 : 1) + (has_target(plot) ? 1 : 0);
+    legend.height = kLegendLine * static_cast<double>(lines) + 8.0;
     return legend;
 }
 
@@ -169,10 +196,13 @@ void draw_legend(Canvas& canvas, const Panel& panel, const CurvePlot& plot) {
         canvas.polyline({at, {at.x() + kLegendSample, at.y()}}, 2.2, color_of(i));
         canvas.text(text_at(), plot.curves[i].label, kTextSize, kInk);
     }
-    if (legend.band.empty()) return;
-    const Color color = plot.curves.size() == 1 || plot.is_share_of_share ? color_of(0) : kFrame;
-    canvas.fill_rectangle(at.x(), at.y() - 7.0, at.x() + kLegendSample, at.y() + 7.0, color, 0.25);
-    canvas.text(text_at(), legend.band, kTextSize, kInk);
+    const auto area = [&](Color color, const std::string& text) {
+        canvas.fill_rectangle(at.x(), at.y() - 7.0, at.x() + kLegendSample, at.y() + 7.0, color, 0.25);
+        canvas.text(text_at(), text, kTextSize, kInk);
+        at.y() += kLegendLine;
+    };
+    if (!legend.band.empty()) area(plot.curves.size() == 1 || is_of_shares(plot) ? color_of(0) : kFrame, legend.band);
+    if (has_target(plot)) area(kTarget, plot.target.label);
 }
 
 void draw_plot(Canvas& canvas, const CurvePlot& plot, double top) {
@@ -182,6 +212,7 @@ void draw_plot(Canvas& canvas, const CurvePlot& plot, double top) {
     canvas.vertical_text({30.0, 0.5 * (panel.top + panel.bottom)}, plot.y_title, kTextSize, kInk);
     canvas.text({0.5 * (kLeft + kRight), panel.bottom + 44.0}, plot.x_title, kTextSize, kInk, Align::kCentre);
     if (plot.is_share_of_share) canvas.polyline({panel.at(0.0, 0.0), panel.at(1.0, 1.0)}, 1.4, kFrame);
+    draw_target(canvas, panel, plot);
     for (std::size_t i = 0; i < plot.curves.size(); ++i) draw_band(canvas, panel, plot.curves[i], color_of(i));
     for (std::size_t i = 0; i < plot.curves.size(); ++i) draw_curve(canvas, panel, plot.curves[i], color_of(i));
     draw_legend(canvas, panel, plot);

@@ -13,6 +13,7 @@
 #include "apps/data_set/png_file.hpp"
 #include "apps/data_set/trajectory_tum.hpp"
 #include "apps/import/import_model.hpp"
+#include "apps/model_symmetries.hpp"
 #include "apps/simulate/parts.hpp"
 #include "apps/simulate/staged_folder.hpp"
 #include "core/parallel.hpp"
@@ -24,6 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kSceneId = 1;
+constexpr int kUnnamedId = 1;  // of a part that is not built in
 // Of the silhouette that must be seen for another instance to be asked for, as BOP's own lists have it.
 constexpr double kLeastVisibleFraction = 0.1;
 
@@ -48,14 +50,18 @@ data_set::FrameRecord write_frame(const Recording& recording, int index, const f
     return record;
 }
 
-void write_models(const std::map<int, Mesh>& models, const fs::path& data_set_folder) {
+// The symmetries by object number; none are looked for unless `find`.
+std::map<int, Symmetries> write_models(const std::map<int, Mesh>& models, bool find, const fs::path& data_set_folder) {
     std::map<int, data_set::ModelInfo> infos;
+    std::map<int, Symmetries> symmetries;
     for (const auto& [id, mesh] : models) {
         const ModelExtent extent = extent_of(mesh);
         data_set::ModelInfo& info = infos[id];
         info.diameter_m = data_set::diameter_of(mesh.vertices_in_object);
         info.box_min_in_object_m = extent.box_min_in_object;
         info.box_max_in_object_m = extent.box_max_in_object;
+        if (find) symmetries[id] = program::find_symmetries(mesh);
+        program::declare(symmetries[id], info);
     }
     for (const char* name : {"models", "models_eval"}) {
         const fs::path folder = data_set_folder / name;
@@ -65,11 +71,12 @@ void write_models(const std::map<int, Mesh>& models, const fs::path& data_set_fo
         }
         data_set::write_models_info(folder / "models_info.json", infos);
     }
+    return symmetries;
 }
 
 // A set of built-in parts has all of them, so that it can be taken for a set of three objects.
 std::map<int, Mesh> models_of(const Mesh& mesh, const std::string& part_name) {
-    if (part_name.empty()) return {{1, mesh}};
+    if (part_name.empty()) return {{kUnnamedId, mesh}};
     std::map<int, Mesh> models;
     for (const std::string& name : part_names()) models[object_id_of(name)] = embedded_part(name).mesh;
     models[object_id_of(part_name)] = mesh;
@@ -134,7 +141,9 @@ SimulationSummary write_data_set(const Mesh& mesh, const Part& part, const Simul
         if (record.objects.front().measured_pixels == 0) ++summary.frames_without_part;
     }
     writer.finish();
-    write_models(models_of(mesh, options.recording.part_name), staged.path());
+    const std::string& name = options.recording.part_name;
+    const auto symmetries = write_models(models_of(mesh, name), options.find_symmetries, staged.path());
+    summary.symmetries = symmetries.at(name.empty() ? kUnnamedId : object_id_of(name));
     write_lists(records, staged.path());
     staged.commit();
     summary.complete = true;

@@ -8,6 +8,7 @@
 #include "apps/console.hpp"
 #include "apps/data_set/camera_json.hpp"
 #include "apps/model_input.hpp"
+#include "apps/model_symmetries.hpp"
 #include "apps/simulate/parts.hpp"
 #include "apps/simulate/sensor_file.hpp"
 #include "apps/simulate/simulate.hpp"
@@ -28,6 +29,7 @@ struct SimulateOptions {
     std::string scenario = "piston";
     std::string part = "engine_block";
     ModelOptions model;
+    bool no_symmetries = false;
     std::uint64_t seed = 1;
     int frames = 0;  // 0: as many as the scenario has by itself
     double fps = 30.0;
@@ -95,6 +97,7 @@ SimulationOptions simulation_options(const SimulateOptions& command) {
     options.data_set = command.out;
     options.replace = command.force;
     options.num_threads = command.threads;
+    options.find_symmetries = !command.no_symmetries;
     RecordingOptions& recording = options.recording;
     recording.scenario = simulate::scenario_of(command.scenario);
     recording.path = scenario_options(command, recording.scenario);
@@ -136,6 +139,10 @@ int simulate_recording(const SimulateOptions& command, bool part_given, const Sh
                          " frames have no depth on the part: it is out of view or out of the sensor's range",
                      shared.quiet);
     }
+    if (options.find_symmetries) {
+        print_notice("symmetries of the part (models_info.json has the exact ones): " + describe(summary.symmetries),
+                     shared.quiet);
+    }
     return kSuccess;
 }
 
@@ -175,7 +182,9 @@ CLI::Option* add_part_options(CLI::App& command, SimulateOptions& options) {
         command.add_option("--part", options.part, "Built-in part")->check(CLI::IsMember(simulate::part_names()));
     add_model_file_options(command, options.model);
     command.get_option("--model")->description("Model file, instead of a built-in part");
-    for (const char* name : {"--part", "--model", "--unit"}) command.get_option(name)->group("Part");
+    command.add_flag("--no-symmetries", options.no_symmetries,
+                     "Look for no symmetries and write none into models_info.json");
+    for (const char* name : {"--part", "--model", "--unit", "--no-symmetries"}) command.get_option(name)->group("Part");
     return part;
 }
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "apps/data_set/png_file.hpp"
+#include "apps/evaluation/coverage.hpp"
 #include "apps/evaluation/error_curves.hpp"
 #include "core/random.hpp"
 #include "tests/apps/data_set/test_files.hpp"
@@ -73,7 +74,7 @@ TEST(ErrorCurves, OneAPairOfQuantitiesThatIsKnown) {
 
 TEST(Calibration, OfNormalDrawsIsTheDiagonal) {
     const auto plots = calibration_curves(frames_near_to_far(4000));
-    ASSERT_EQ(plots.size(), 1U);
+    ASSERT_EQ(plots.size(), 2U);            // against p and against distance
     ASSERT_EQ(plots[0].curves.size(), 4U);  // all, and three distances
     for (const Curve& curve : plots[0].curves) {
         for (const CurveBin& bin : curve.bins) EXPECT_NEAR(bin.median, bin.x, 0.06) << curve.label;

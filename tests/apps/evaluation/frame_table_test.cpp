@@ -77,6 +77,30 @@ TEST(FrameTable, KnowsEveryVerdictAndWhatIsShown) {
     }
 }
 
+TEST(FrameTable, TellsWhichVerdictsAreWrongWhereThereIsATolerance) {
+    std::vector<FrameErrors> frames;
+    for (const Verdict verdict : {Verdict::kAccept, Verdict::kContinue, Verdict::kLost}) {
+        for (const double translation_m : {0.001, 0.003}) {
+            FrameErrors& frame = frames.emplace_back();
+            frame.verdict = verdict;
+            frame.errors.emplace();
+            frame.errors->translation_m = translation_m;
+        }
+    }
+    frames.emplace_back();
+    const std::string table = table_of(frames, Tolerance{0.002, 0.1});
+    std::vector<std::string> last;
+    for (std::size_t begin = 0, end = 0; begin < table.size(); begin = end + 1) {
+        end = table.find('\n', begin);
+        const std::string line = table.substr(begin, end - begin);
+        last.push_back(line.substr(line.rfind(',') + 1));
+    }
+    EXPECT_EQ(last, (std::vector<std::string>{"verdict_error", "", "false_accept", "", "", "missed", "", ""}));
+    const auto read = read_table(write_text(new_folder() / "table.csv", table));
+    EXPECT_EQ(table_of(read), table_of(frames));  // all else is as without
+    EXPECT_EQ(table_of(read, Tolerance{0.002, 0.1}), table);
+}
+
 TEST(FrameTable, OlderOnesHaveNoVerdicts) {
     std::string old;
     const std::string table = table_of(two_frames());

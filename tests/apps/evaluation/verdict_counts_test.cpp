@@ -33,17 +33,35 @@ TEST(FalseAccept, IsAWrongPoseOrAPartThatIsNotThere) {
     EXPECT_FALSE(is_false_accept({}, kTolerance));
 }
 
+TEST(Missed, IsARightPoseThatIsGivenUp) {
+    EXPECT_TRUE(is_missed(frame_with(Verdict::kLost, 0.0019, 0.019), kTolerance));
+    EXPECT_FALSE(is_missed(frame_with(Verdict::kLost, 0.0021), kTolerance));
+    EXPECT_FALSE(is_missed(frame_with(Verdict::kLost, 0.0, 0.021), kTolerance));
+    EXPECT_FALSE(is_missed(frame_with(Verdict::kContinue, 0.0), kTolerance));
+    EXPECT_FALSE(is_missed(frame_with(Verdict::kAccept, 0.0), kTolerance));
+    FrameErrors elsewhere = frame_with(Verdict::kLost, 0.0);
+    elsewhere.shown = Shown::kNothing;
+    EXPECT_FALSE(is_missed(elsewhere, kTolerance));
+    FrameErrors without_pose;
+    without_pose.verdict = Verdict::kLost;
+    EXPECT_FALSE(is_missed(without_pose, kTolerance));
+}
+
 TEST(VerdictCounts, AreOfAllFrames) {
     FrameErrors empty = frame_with(Verdict::kAccept, 0.0);
     empty.shown = Shown::kNothing;
     const VerdictCounts counts =
         count_verdicts({frame_with(Verdict::kContinue, 0.0), frame_with(Verdict::kAccept, 0.01), empty,
-                        frame_with(Verdict::kAccept, 0.001), frame_with(Verdict::kLost, 0.5)},
+                        frame_with(Verdict::kAccept, 0.001), frame_with(Verdict::kLost, 0.5),
+                        frame_with(Verdict::kLost, 0.001), FrameErrors{}},
                        kTolerance);
-    EXPECT_EQ(counts.frames, 5);
+    EXPECT_EQ(counts.frames, 6);  // the last has no verdict
+    EXPECT_EQ(counts.accepts + counts.continues + counts.lost, counts.frames);
+    EXPECT_EQ(counts.continues, 1);
+    EXPECT_EQ(counts.missed, 1);
     EXPECT_EQ(counts.accepts, 3);
     EXPECT_EQ(counts.false_accepts, 2);
-    EXPECT_EQ(counts.lost, 1);
+    EXPECT_EQ(counts.lost, 2);
     EXPECT_EQ(counts.first_right_accept, 3);
     EXPECT_EQ(count_verdicts({FrameErrors{}}, kTolerance).frames, 0);  // without a verdict
     EXPECT_EQ(count_verdicts({empty}, kTolerance).first_right_accept, std::nullopt);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "apps/data_set/bop_models.hpp"
@@ -45,17 +46,32 @@ void write_results(const TinyScene& scene, const std::vector<data_set::PoseRow>&
     writer.close();
 }
 
+// What of a log frames from before there were verdicts did not have.
+std::string without_verdict(std::string line) {
+    const std::size_t begin = line.find("\"verdict\":"), end = line.find(',', begin);
+    return line.erase(begin, end + 1 - begin);
+}
+
+// Accepts frame 0, goes on at frame 2, gives up frame 3; frame 1 has no pose.
+Verdict verdict_of_frame(int frame) {
+    return frame == 0 ? Verdict::kAccept : frame == 2 ? Verdict::kContinue : Verdict::kLost;
+}
+
 // Of the same rows, with a standard deviation of 1 mm and 0.01 rad along all axes; frame 2 is predicted.
-void write_log(const TinyScene& scene, const std::vector<data_set::PoseRow>& rows) {
-    std::string log = program::first_log_line({}) + "\n";
+void write_log(const TinyScene& scene, const std::vector<data_set::PoseRow>& rows,
+               const std::string& first_line = program::first_log_line({})) {
+    std::string log = first_line + "\n";
     for (const data_set::PoseRow& row : rows) {
         UpdateResult result;
         result.status = row.image_id == 2 ? UpdateStatus::kPredicted : UpdateStatus::kEstimated;
         result.camera_from_object = row.camera_from_object;
+        result.verdict = verdict_of_frame(row.image_id);
         result.covariance.diagonal() << 1e-4, 1e-4, 1e-4, 1e-6, 1e-6, 1e-6;
         log += program::frame_log_line({row.image_id, 0.0, 0.01, ""}, result) + "\n";
     }
-    log += program::frame_log_line({1, 0.0, 0.01, ""}, {}) + "\n";
+    UpdateResult nothing;
+    nothing.verdict = verdict_of_frame(1);
+    log += program::frame_log_line({1, 0.0, 0.01, ""}, nothing) + "\n";
     write_text(scene.file("log.jsonl"), log);
 }
 
@@ -106,6 +122,17 @@ TEST(Evaluate, TheLogGivesRegionsAndPredictedFrames) {
     EXPECT_NEAR(figures.at("translation_axis_mm").at("x").at("max").get<double>(), 2.0, 1e-9);
     EXPECT_EQ(figures.at("coarse").at("holds_from_frame"), 2);
     EXPECT_DOUBLE_EQ(figures.at("inside_90").get<double>(), 1.0);
+    EXPECT_EQ(figures.at("coverage").at("frames"), 3);
+    EXPECT_DOUBLE_EQ(figures.at("coverage").at("inside_99").get<double>(), 1.0);
+    int frames_in_bins = 0;
+    for (const nlohmann::json& bin : figures.at("coverage_by_distance")) {
+        EXPECT_LT(bin.at("from_mm").get<double>(), bin.at("to_mm").get<double>());
+        EXPECT_GT(bin.at("to_mm").get<double>(), 200.0);  // the part is 0.36 m away
+        EXPECT_LT(bin.at("from_mm").get<double>(), 500.0);
+        frames_in_bins += bin.at("frames").get<int>();
+    }
+    EXPECT_EQ(frames_in_bins, 3);
+    EXPECT_TRUE(contains(outcome.out, " mm            ") && contains(outcome.out, "  all distances")) << outcome.out;
     EXPECT_EQ(run_nearpose(call + "--json -").out, read_text(scene.file("all.json")));
     EXPECT_EQ(data_set::read_png_size(scene.file("calibration.png")).width, 900);
     EXPECT_EQ(data_set::read_png_size(scene.file("curves.png")).width, 900);
@@ -118,6 +145,103 @@ TEST(Evaluate, TheLogGivesRegionsAndPredictedFrames) {
     EXPECT_EQ(run_nearpose(call).exit_code, 1);
     write_text(scene.file("log.jsonl"), program::first_log_line({}) + "\n{\"frame\": 0, \"sta");
     EXPECT_TRUE(contains(run_nearpose(call).err, "log.jsonl: line 2"));
+}
+
+// The first line of a log: what every log has, and more.
+std::string first_line_with(const std::string& more) {
+    return R"({"format":1,"content":"nearpose estimate")" + more + "}";
+}
+
+class EvaluateVerdicts : public testing::Test {
+  protected:
+    EvaluateVerdicts() : scene_(4) {
+        write_results(scene_, some_rows(scene_, 0.003));
+        write_log(scene_, some_rows(scene_, 0.003), first_line_with(""));
+    }
+
+    std::string call(const std::string& more) const {
+        return evaluate(scene_) + "--log " + scene_.file("log.jsonl").string() + " " + more;
+    }
+    nlohmann::json verdicts(const std::string& more = "") const {
+        return nlohmann::json::parse(run_nearpose(call("--json - " + more)).out).at("verdicts");
+    }
+
+    TinyScene scene_;
+};
+
+TEST_F(EvaluateVerdicts, AreCountedAndComparedWithTheTruth) {
+    const Outcome outcome = run_nearpose(call("--out " + scene_.file("table.csv").string()));
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_TRUE(
+        contains(outcome.out, "verdicts of 4 frames: 1 accept, 1 continue, 2 lost; tolerance 2 mm and 1 deg\n"));
+    EXPECT_TRUE(contains(outcome.out,
+                         "accepted but beyond the tolerance: 1 of 1 (95 % interval 20.7 % to 100.0 %); "
+                         "lost though within it: 0 of 2\n"))
+        << outcome.out;
+    EXPECT_TRUE(contains(outcome.err, "log.jsonl: does not state the verdicts' tolerance")) << outcome.err;
+    const std::vector<std::string> table = lines_of(read_text(scene_.file("table.csv")));
+    ASSERT_EQ(table.size(), 5U);
+    EXPECT_TRUE(table[0].ends_with(",verdict,shown,part_moved,verdict_error")) << table[0];
+    EXPECT_TRUE(table[1].ends_with(",accept,part,0,false_accept")) << table[1];
+    EXPECT_TRUE(table[2].ends_with(",lost,part,0,")) << table[2];
+    const auto frames = evaluation::read_table(scene_.file("table.csv"));
+    EXPECT_EQ(frames[1].verdict, Verdict::kLost);  // without a pose
+    EXPECT_EQ(frames[2].verdict, Verdict::kContinue);
+
+    const nlohmann::json counts = verdicts();
+    const std::map<std::string, int> expected = {{"frames", 4}, {"accept", 1},        {"continue", 1},
+                                                 {"lost", 2},   {"false_accepts", 1}, {"missed", 0}};
+    for (const auto& [key, value] : expected) EXPECT_EQ(counts.at(key), value) << key;
+    EXPECT_TRUE(counts.at("first_right_accept_frame").is_null());
+}
+
+TEST_F(EvaluateVerdicts, AreJudgedByTheToleranceOfTheOptionsOrTheLog) {
+    const Outcome asked = run_nearpose(call("--tolerance-mm 4 --tolerance-deg 2"));
+    EXPECT_TRUE(contains(asked.out, "tolerance 4 mm and 2 deg\n")) << asked.out;
+    EXPECT_TRUE(contains(asked.out, "accepted but beyond the tolerance: 0 of 1")) << asked.out;
+    EXPECT_TRUE(contains(asked.out, "lost though within it: 1 of 2\n")) << asked.out;
+    EXPECT_FALSE(contains(asked.err, "tolerance")) << asked.err;
+    EXPECT_EQ(verdicts("--tolerance-mm 4").at("first_right_accept_frame"), 0);
+
+    write_log(scene_, some_rows(scene_, 0.003), first_line_with(R"(,"tolerance_m":0.005,"tolerance_rad":0.02)"));
+    EXPECT_FALSE(contains(run_nearpose(call("")).err, "tolerance"));
+    EXPECT_NEAR(verdicts().at("tolerance_mm").get<double>(), 5.0, 1e-12);
+    EXPECT_NEAR(verdicts("--tolerance-deg 3").at("tolerance_deg").get<double>(), 3.0, 1e-12);
+    EXPECT_NEAR(verdicts("--tolerance-deg 3").at("tolerance_mm").get<double>(), 5.0, 1e-12);
+    EXPECT_EQ(verdicts().at("missed"), 1);
+    write_log(scene_, some_rows(scene_, 0.003), first_line_with(R"(,"tolerance_m":-0.01,"tolerance_rad":0.02)"));
+    const Outcome negative = run_nearpose(call(""));
+    EXPECT_EQ(negative.exit_code, 1);
+    EXPECT_TRUE(contains(negative.err, "log.jsonl: line 1") && contains(negative.err, "tolerance_m")) << negative.err;
+}
+
+TEST_F(EvaluateVerdicts, ThatAreUnknownAreRefused) {
+    std::string log = read_text(scene_.file("log.jsonl"));
+    log.replace(log.find("\"accept\""), 8, "\"maybe\"");
+    write_text(scene_.file("log.jsonl"), log);
+    const Outcome outcome = run_nearpose(call(""));
+    EXPECT_EQ(outcome.exit_code, 1);
+    for (const char* part : {"log.jsonl: line 2", "maybe", "accept, continue, lost"}) {
+        EXPECT_TRUE(contains(outcome.err, part)) << outcome.err;
+    }
+}
+
+// Logs from before there were verdicts.
+TEST_F(EvaluateVerdicts, NeedNotBeThere) {
+    std::string log;
+    for (const std::string& line : lines_of(read_text(scene_.file("log.jsonl")))) {
+        log += (contains(line, "\"verdict\":") ? without_verdict(line) : line) + "\n";
+    }
+    write_text(scene_.file("log.jsonl"), log);
+    const Outcome outcome = run_nearpose(call("--out " + scene_.file("table.csv").string()));
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_TRUE(contains(outcome.out, "90 % region")) << outcome.out;  // the covariances hold all the same
+    EXPECT_FALSE(contains(outcome.out, "verdict") || contains(outcome.err, "tolerance")) << outcome.out;
+    EXPECT_TRUE(verdicts().is_null());
+    // The same columns as without a log at all.
+    const std::string header = lines_of(read_text(scene_.file("table.csv")))[0];
+    EXPECT_EQ(header, lines_of(run_nearpose(evaluate(scene_) + "--out -").out)[0]);
+    EXPECT_TRUE(header.ends_with(",part_moved")) << header;
 }
 
 TEST(Evaluate, TrajectoriesHaveTheSameStampsAndTheErrorOfTheSummary) {
@@ -205,6 +329,7 @@ TEST_F(EvaluateRefuses, ModelsThatAreNotDescribed) {
 
 TEST_F(EvaluateRefuses, OptionsThatDoNotFit) {
     expect_failure({"--log"}, "--calibration " + scene_.file("c.png").string(), 2);
+    expect_failure({"--tolerance-mm", "--log"}, "--tolerance-mm 3", 2);
     expect_failure({"--out"}, "--out same.csv --json same.csv", 2);
 }
 

@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "apps/data_set/json_file.hpp"
 #include "core/random.hpp"
 
 namespace nearpose::program {
@@ -13,6 +14,14 @@ Pose some_pose() {
     Twist twist;
     twist << 0.3, -0.7, 1.1, 0.02, -0.05, 0.6;
     return exp(twist);
+}
+
+TEST(FirstLogLine, StatesTheToleranceOfTheVerdicts) {
+    RunDescription run;
+    run.tolerance = {0.005, 0.02};
+    const auto file = data_set::JsonFile::from_text(first_log_line(run), "log");
+    EXPECT_DOUBLE_EQ(file.root().at("tolerance_m").number(), 0.005);
+    EXPECT_DOUBLE_EQ(file.root().at("tolerance_rad").number(), 0.02);
 }
 
 // Poses drawn from the right perturbation scatter about the camera's axes as covariance_ros says.

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "apps/data_set/bop_models.hpp"
 #include "apps/data_set/camera_json.hpp"
 #include "apps/data_set/json_file.hpp"
 #include "tests/apps/program/tiny_scene.hpp"
@@ -54,6 +55,44 @@ TEST(SimulateCommand, SensorSetsTheCameraUnlessOneIsNamed) {
     EXPECT_EQ(data_set::read_camera_json(folder / "named/camera.json").depth_scale_mm, 0.5);
     const data_set::JsonFile truth(folder / "named/test/000001/scene_gt.json");
     EXPECT_EQ(truth.root().at("0").elements().at(0).at("obj_id").integer(), 3);
+}
+
+// A square column: four turns about its axis and half turns about axes across.
+TEST(SimulateCommand, WritesTheSymmetriesThatItFindsUnlessToldNotTo) {
+    const fs::path folder = fresh_folder("symmetries");
+    std::string obj;
+    for (int i = 0; i < 8; ++i) {
+        const auto corner = [&](int bit, int size) { return std::to_string((i >> bit & 1) * size) + " "; };
+        obj += "v " + corner(0, 60) + corner(1, 60) + corner(2, 110) + "\n";
+    }
+    for (const char* face : {"1 2 4 3", "5 7 8 6", "1 5 6 2", "3 4 8 7", "1 3 7 5", "2 6 8 4"}) {
+        obj += "f " + std::string(face) + "\n";
+    }
+    write_text(folder / "column.obj", obj);
+    data_set::write_camera_json(folder / "camera.json", {96, 72, 90.0, 90.0, 47.5, 35.5}, 0.1);
+    const std::string common =
+        "simulate --frames 2 --scenario baseline --camera " + (folder / "camera.json").string() + " ";
+    const std::string column = common + "--model " + (folder / "column.obj").string() + " --unit mm --out ";
+    const Outcome found = run_nearpose(column + (folder / "found").string());
+    ASSERT_EQ(found.exit_code, 0) << found.err;
+    EXPECT_NE(found.err.find("4-fold about z"), std::string::npos) << found.err;
+    EXPECT_TRUE(found.out.empty()) << found.out;
+    for (const char* name : {"models", "models_eval"}) {
+        const data_set::ModelInfo info = data_set::read_model_info(folder / "found" / name, 1);
+        EXPECT_EQ(info.discrete_symmetries.size(), 7U) << name;
+        EXPECT_TRUE(info.continuous_symmetries.empty());
+    }
+    const Outcome imported = run_nearpose("import --model " + (folder / "column.obj").string() + " --unit mm --out " +
+                                          (folder / "imported").string());
+    ASSERT_EQ(imported.exit_code, 0) << imported.err;
+    EXPECT_EQ(read_text(folder / "imported/models_info.json"), read_text(folder / "found/models/models_info.json"));
+
+    const Outcome none = run_nearpose(column + (folder / "none").string() + " --no-symmetries");
+    ASSERT_EQ(none.exit_code, 0) << none.err;
+    EXPECT_EQ(none.err.find("symmetries"), std::string::npos) << none.err;
+    EXPECT_TRUE(data_set::read_model_info(folder / "none/models", 1).discrete_symmetries.empty());
+    const Outcome flange = run_nearpose(common + "--part flange --out " + (folder / "flange").string());
+    EXPECT_NE(flange.err.find("none; nearly the same after 60, 120"), std::string::npos) << flange.err;
 }
 
 TEST(SimulateCommand, TakesACameraPathOfFourDigits) {
