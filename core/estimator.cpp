@@ -80,7 +80,7 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
     result.status = seen ? UpdateStatus::kEstimated : tracked_ ? UpdateStatus::kPredicted : UpdateStatus::kNoPose;
     result.verdict = Verdict::kLost;
     if (tracked_) describe_estimate(observation, result);
-    fine_.reset();
+    fine_.clear();
     constexpr double kConvincing = 0.8;
     frames_lost_ = result.verdict == Verdict::kLost || result.pixels.agreement() < kConvincing ? frames_lost_ + 1 : 0;
     result.seconds.total = seconds_since(begin);
@@ -206,7 +206,8 @@ bool PoseEstimator::take_map(const Observation& observation, UpdateResult& resul
 
 // The chosen mode's fine fit and the track that the arm's motion carried, brought together.
 void PoseEstimator::correct_tracked(const Mode& chosen, bool replaced, const Observation& observation) {
-    const FineFit fit = fit_finely(chosen.camera_from_object, fine_context(observation));
+    const int rays = economical_ ? options_.method.economy.fit_rays : options_.method.refinement.max_rays;
+    const FineFit fit = fit_finely(chosen.camera_from_object, fine_context(rays, observation));
     observed_ = fit.covariance;
     if (!track_ || replaced)
         track_ = Track{fit.camera_from_object, fit.covariance, {}};
@@ -227,11 +228,12 @@ ObservedGrid PoseEstimator::observe_on(const PixelGrid& grid, const Observation&
     return observed;
 }
 
-// The grid of refined views, kept while the place to look at stays.
-StepContext PoseEstimator::fine_context(const Observation& observation) {
-    const PixelGrid grid = grid_for(observation, refinement_now().max_rays);
-    if (!fine_ || fine_->grid != grid) fine_ = observe_on(grid, observation);
-    return context_for(observation, *fine_, options_.method.step);
+// On a grid that was measured once.
+StepContext PoseEstimator::fine_context(int max_rays, const Observation& observation) {
+    const PixelGrid grid = grid_for(observation, max_rays);
+    auto kept = std::find_if(fine_.begin(), fine_.end(), [&](const ObservedGrid& other) { return other.grid == grid; });
+    if (kept == fine_.end()) kept = fine_.insert(fine_.end(), observe_on(grid, observation));
+    return context_for(observation, *kept, options_.method.step);
 }
 
 GradientStep PoseEstimator::step_now() const {
@@ -304,7 +306,7 @@ void PoseEstimator::describe_estimate(const Observation& observation, UpdateResu
     result.camera_from_object = tracked_->camera_from_object;
     result.cost = tracked_->cost;
     const ModelExtent& extent = views_->extent();
-    const StepContext context = fine_context(observation);
+    const StepContext context = fine_context(refinement_now().max_rays, observation);
     const Eigen::Vector3d centre = extent.centre_in_object();
     const bool estimated = result.status == UpdateStatus::kEstimated;
     if (!track_) observed_ = covariance_at(tracked_->camera_from_object, context);

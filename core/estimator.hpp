@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <list>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -114,7 +115,7 @@ class PoseEstimator {
     std::vector<Mode> refine_all(const std::vector<Mode>& modes, const Observation& observation, UpdateResult& result);
     StepContext context_for(const Observation& observation, const ObservedGrid& observed,
                             const GradientStep& step) const;
-    StepContext fine_context(const Observation& observation);
+    StepContext fine_context(int max_rays, const Observation& observation);
     ObservedGrid observe_on(const PixelGrid& grid, const Observation& observation) const;
     PixelGrid grid_for(const Observation& observation, int max_rays) const;
     PixelGrid grid_around(const Pose& camera_from_object, const Observation& observation, int max_rays) const;
@@ -130,7 +131,7 @@ class PoseEstimator {
     std::vector<SurfaceAnchor> anchors_;  // of the start on the surface; that on pairs has its own
     std::optional<AnchorPairs> pairs_;
     std::optional<PatchGrid> patches_;  // while searching
-    std::optional<ObservedGrid> fine_;  // during an update
+    std::list<ObservedGrid> fine_;      // during an update, the grids of refined views
     ParticleSet particles_;
     std::optional<Mode> tracked_;           // the estimate of the last update
     std::optional<Track> track_;            // the same with its spread; the default method's

@@ -42,7 +42,7 @@ bool PoseEstimator::take_refined_mode(const Observation& observation, UpdateResu
 std::vector<Mode> PoseEstimator::refine_all(const std::vector<Mode>& modes, const Observation& observation,
                                             UpdateResult& result) {
     const Refinement refinement = refinement_now();
-    const StepContext context = fine_context(observation);
+    const StepContext context = fine_context(refinement.max_rays, observation);
     std::vector<MovedParticle> moved(modes.size());
     parallel_for(static_cast<int>(modes.size()), options_.num_threads,
                  [&](int k) { moved[k] = refine_mode(modes[k].camera_from_object, context, refinement); });
@@ -63,7 +63,11 @@ std::vector<Mode> PoseEstimator::modes_to_refine(const Observation& observation,
     for (int i = 0; i < particles_.size(); ++i) swarm.push_back({particles_.poses[i], last_costs_[i], 0.0});
     const std::vector<Mode> leaders = distinct_modes(swarm, refinement.modes, centre, mode_distance());
     std::vector<Mode> modes;
-    if (tracked_) modes.push_back(*tracked_);
+    // A particle may have brought the tracked mode nearer than its prediction: no need to refine both, once it holds.
+    const bool brought =
+        economical_ && !leaders.empty() &&
+        same_mode(leaders.front().camera_from_object, tracked_->camera_from_object, centre, mode_distance());
+    if (tracked_ && !brought) modes.push_back(*tracked_);
     modes.insert(modes.end(), leaders.begin(), leaders.end());
     if (refinement.rivals > 0 && rivals_due()) {
         const std::vector<Mode> near = near_modes(modes);
@@ -133,8 +137,9 @@ std::vector<Mode> PoseEstimator::best_rivals(const std::vector<Mode>& leaders, c
             rivals_of(leaders[k].camera_from_object, views_->extent(), count, options_.seed + k, step_);
         proposals.insert(proposals.end(), rivals.begin(), rivals.end());
     }
-    const std::vector<MovedParticle> moved =
-        move_all(proposals, observation, options_.method.start_step, RandomPurpose::kRivals, result);
+    GradientStep step = options_.method.start_step;
+    step.max_rays = std::min(step.max_rays, step_now().max_rays);
+    const std::vector<MovedParticle> moved = move_all(proposals, observation, step, RandomPurpose::kRivals, result);
     std::vector<Mode> modes;
     for (const MovedParticle& rival : moved) modes.push_back({rival.camera_from_object, rival.cost, rival.support});
     return distinct_modes(modes, refinement.rival_modes, views_->extent().centre_in_object(), mode_distance());

@@ -10,17 +10,15 @@
 namespace nearpose {
 namespace {
 
-constexpr int kRounds = 3;
+constexpr int kMaxRounds = 4;
 constexpr double kGateSigmas = 5.0;   // a pair farther off than that is not the same surface
 constexpr double kHuberSigmas = 2.0;  // beyond it a residual pulls with constant force
 
 // The normal equations of one round over (twist about the centre, unknowns of the field), at the pose and at zero
 // errors of the sensor.
 struct NormalEquations {
-    explicit NormalEquations(Eigen::Index unknowns)
-        : sums(Eigen::MatrixXd::Zero(6 + unknowns + 1, 6 + unknowns + 1)), unknowns(unknowns) {}
-    auto information() const { return sums.topLeftCorner(6 + unknowns, 6 + unknowns); }
-    auto gradient() const { return sums.col(6 + unknowns).head(6 + unknowns); }
+    explicit NormalEquations(Eigen::Index count)
+        : sums(Eigen::MatrixXd::Zero(6 + count + 1, 6 + count + 1)), unknowns(count) {}
 
     Eigen::MatrixXd sums;  // of weight * row * row^T, row = (derivatives, residual)
     Eigen::Index unknowns;
@@ -101,7 +99,7 @@ struct FaceInImage {
                            double expected_m, double gate_m) const {
         const PinholeCamera& camera = observation.camera();
         MeasuredAround sum;
-        const int step = std::max(1, reach / 2);
+        const int step = std::max(1, reach);
         for (int dv = goes_on.up ? -reach : 0; dv <= (goes_on.down ? reach : 0); dv += step) {
             for (int du = goes_on.left ? -reach : 0; du <= (goes_on.right ? reach : 0); du += step) {
                 const int other_u = u + du, other_v = v + dv;
@@ -180,34 +178,54 @@ View cast(const Pose& camera_from_object, const StepContext& context) {
     return context.views.generate(camera_from_object, context.observed.camera);
 }
 
-// The variances with which the unknowns of the field take part in the fit.
-Eigen::VectorXd fitted_variances(const SensorField& field, const SensorModel& sensor) {
+// What is solved: the pose and those of the field's unknowns that some ray met; of the others nothing is learned.
+struct Problem {
+    std::vector<Eigen::Index> active;  // of the pose and the unknowns
+    Eigen::MatrixXd information;       // of the rays, over the active ones
+    Eigen::VectorXd gradient;
+    Eigen::VectorXd variances;         // of the active unknowns
+    Eigen::VectorXd fitted_variances;  // with which they take part in the fit
+};
+
+Problem problem_of(const NormalEquations& equations, const SensorField& field, const StepContext& context) {
+    const SensorModel& sensor = context.observation.sensor();
     SensorModel fitted = sensor;
     fitted.systematic_sigma_m *= sensor.systematic_fitted;
     fitted.depth_scale_sigma *= sensor.scale_fitted;
-    return prior_variances(field, fitted);
+    Problem problem;
+    for (Eigen::Index i = 0; i < 6 + equations.unknowns; ++i)
+        if (i < 6 || equations.sums(i, i) > 0.0) problem.active.push_back(i);
+    problem.information = equations.sums(problem.active, problem.active);
+    problem.gradient = equations.sums(problem.active, 6 + equations.unknowns);
+    const double diameter_m = context.views.extent().diameter_m();  // a weak prior of the pose
+    problem.information.diagonal().head<3>().array() += 1.0;
+    problem.information.diagonal().segment<3>(3).array() += 1.0 / (diameter_m * diameter_m);
+    const auto unknowns = static_cast<Eigen::Index>(problem.active.size()) - 6;
+    const Eigen::VectorXd all = prior_variances(field, sensor), all_fitted = prior_variances(field, fitted);
+    problem.variances.resize(unknowns);
+    problem.fitted_variances.resize(unknowns);
+    for (Eigen::Index i = 0; i < unknowns; ++i) {
+        problem.variances[i] = all[problem.active[i + 6] - 6];
+        problem.fitted_variances[i] = all_fitted[problem.active[i + 6] - 6];
+    }
+    return problem;
 }
 
-void add_weak_prior(Eigen::MatrixXd& information, double diameter_m) {
-    information.diagonal().head<3>().array() += 1.0;
-    information.diagonal().segment<3>(3).array() += 1.0 / (diameter_m * diameter_m);
+Eigen::LLT<Eigen::MatrixXd> factor_of(const Problem& problem) {
+    Eigen::MatrixXd matrix = problem.information;
+    matrix.diagonal().tail(problem.fitted_variances.size()) += problem.fitted_variances.cwiseInverse();
+    return matrix.llt();
 }
 
 // Of the fit's pose when the sensor's errors have their whole variances, while the fit takes them for smaller: with the
 // fit's matrix M, whose prior of the errors is L, the estimate's error is M^-1 (noise - L errors), hence its covariance
 // M^-1 (J^T W J + L V L) M^-1.
-Matrix6d covariance_of(const NormalEquations& equations, const SensorField& field, const StepContext& context) {
-    const SensorModel& sensor = context.observation.sensor();
-    const Eigen::Index unknowns = field.num_unknowns();
-    const Eigen::VectorXd fitted = fitted_variances(field, sensor).cwiseInverse();
-    Eigen::MatrixXd matrix = equations.information();
-    matrix.diagonal().tail(unknowns) += fitted;
-    add_weak_prior(matrix, context.views.extent().diameter_m());
-    Eigen::MatrixXd spread = equations.information();
-    spread.diagonal().tail(unknowns) += fitted.cwiseAbs2().cwiseProduct(prior_variances(field, sensor));
-    add_weak_prior(spread, context.views.extent().diameter_m());
-    const Eigen::MatrixXd gain = matrix.llt().solve(Eigen::MatrixXd::Identity(matrix.rows(), 6)).transpose();
-    const Matrix6d covariance = gain * (spread * gain.transpose());
+Matrix6d covariance_of(const Problem& problem, const Eigen::LLT<Eigen::MatrixXd>& factor) {
+    Eigen::MatrixXd spread = problem.information;
+    spread.diagonal().tail(problem.variances.size()) +=
+        problem.fitted_variances.cwiseAbs2().cwiseInverse().cwiseProduct(problem.variances);
+    const Eigen::MatrixXd gain = factor.solve(Eigen::MatrixXd::Identity(spread.rows(), 6));
+    const Matrix6d covariance = gain.transpose() * (spread * gain);
     return 0.5 * (covariance + covariance.transpose());
 }
 
@@ -216,33 +234,42 @@ Matrix6d covariance_of(const NormalEquations& equations, const SensorField& fiel
 FineFit fit_finely(const Pose& start, const StepContext& context) {
     const SensorModel& sensor = context.observation.sensor();
     const SensorField field = field_over(context.observation.camera(), sensor);
-    const Eigen::Index unknowns = field.num_unknowns();
-    const Eigen::VectorXd prior = fitted_variances(field, sensor).cwiseInverse();
-    Linearisation at{start, Eigen::VectorXd::Zero(unknowns), 0.0};
-    NormalEquations equations(unknowns);
-    View view;
-    for (int round = 0; round < kRounds; ++round) {
+    const ModelExtent& extent = context.views.extent();
+    const double sigma_m = context.observation.sigma_m(context.observation.mean_distance_m());
+    // Of any of the model's points: less than the first is nothing, less than the second meets the same faces.
+    const double nothing_m = 0.05 * sigma_m, same_faces_m = 0.5 * sigma_m;
+    Linearisation at{start, Eigen::VectorXd::Zero(field.num_unknowns()), 0.0};
+    FineFit fit;
+    View view = cast(start, context);
+    for (int round = 0; round < kMaxRounds; ++round) {
         // A start that is off by little more than the noise is drawn in from farther at first.
         at.extra_sigma_m = round == 0 ? 2.0 * sensor.systematic_sigma_m : 0.0;
-        if (round != 1) view = cast(at.camera_from_object, context);
-        equations = linearise(at, view, field, context);
-        Eigen::MatrixXd information = equations.information();
-        information.diagonal().tail(unknowns) += prior;
-        add_weak_prior(information, context.views.extent().diameter_m());
-        const Eigen::VectorXd step = information.llt().solve(equations.gradient());
-        const Pose moved =
-            perturb_about(at.camera_from_object, step.head<6>(), context.views.extent().centre_in_object());
+        const NormalEquations equations = linearise(at, view, field, context);
+        const Problem problem = problem_of(equations, field, context);
+        const Eigen::LLT<Eigen::MatrixXd> factor = factor_of(problem);
+        const Eigen::VectorXd step = factor.solve(problem.gradient);
+        const Pose moved = perturb_about(at.camera_from_object, step.head<6>(), extent.centre_in_object());
         if (!is_valid(moved)) break;
         at.camera_from_object = moved;
-        at.errors = step.tail(unknowns);
+        for (std::size_t i = 6; i < problem.active.size(); ++i)
+            at.errors[problem.active[i] - 6] = step[static_cast<Eigen::Index>(i)];
+        const double shift_m = step.segment<3>(3).norm() + 0.5 * extent.diameter_m() * step.head<3>().norm();
+        const bool last = round + 1 == kMaxRounds || (round > 0 && shift_m < nothing_m);
+        if (last) fit.covariance = covariance_of(problem, factor);
+        fit.pairs = equations.pairs;
+        if (last) break;
+        if (shift_m > same_faces_m) view = cast(at.camera_from_object, context);
     }
-    return {at.camera_from_object, covariance_of(equations, field, context), equations.pairs};
+    fit.camera_from_object = at.camera_from_object;
+    return fit;
 }
 
 Matrix6d covariance_at(const Pose& camera_from_object, const StepContext& context) {
     const SensorField field = field_over(context.observation.camera(), context.observation.sensor());
     const Linearisation at{camera_from_object, Eigen::VectorXd::Zero(field.num_unknowns()), 0.0};
-    return covariance_of(linearise(at, cast(camera_from_object, context), field, context), field, context);
+    const Problem problem =
+        problem_of(linearise(at, cast(camera_from_object, context), field, context), field, context);
+    return covariance_of(problem, factor_of(problem));
 }
 
 Matrix6d about_origin(const Matrix6d& covariance_about_centre, const Eigen::Vector3d& centre_in_object) {

@@ -132,13 +132,16 @@ MovedParticle refine_mode(const Pose& camera_from_object, const StepContext& con
     const double diameter_m = context.views.extent().diameter_m();
     const double sensor_m = context.observation.sigma_m(context.observation.mean_distance_m());
     const RandomStream unused(0, 0, 0, RandomPurpose::kSampleConsensus);
+    View view;
     for (int round = 0; round < refinement.rounds; ++round) {
         // A pair farther off than a few of its sigmas is not the same surface.
         constexpr double kGateSigmas = 5.0;
+        constexpr int kRoundsPerView = 2;  // one moves the pose less than the view's rays are apart
         step.max_distance_diameters = kGateSigmas * (step.extra_sigma_diameters + sensor_m / diameter_m);
         const StepContext sharper{context.views, context.solver, context.observation, context.observed,
                                   step,          context.cost,   context.pixel_cost,  context.scale_by_overlap};
-        solve(find_pairs(cast(moved.camera_from_object, context, moved), sharper, unused, moved), sharper, moved);
+        if (round % kRoundsPerView == 0) view = cast(moved.camera_from_object, context, moved);
+        solve(find_pairs(view, sharper, unused, moved), sharper, moved);
         step.extra_sigma_diameters *= 0.5;
     }
     const Timer timer(moved.seconds.likelihood);

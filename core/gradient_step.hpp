@@ -59,8 +59,8 @@ struct StepContext {
 // which is kept. `random` is used by the sample consensus.
 MovedParticle move_particle(const Pose& camera_from_object, const StepContext& context, const RandomStream& random);
 
-// A mode on its way to the bottom: like move_particle, but the view is cast anew each round, pairs are projective, and
-// the extra noise halves from round to round.
+// A mode on its way to the bottom: like move_particle, but the view is cast anew every other round, pairs are
+// projective, and the extra noise halves from round to round.
 MovedParticle refine_mode(const Pose& camera_from_object, const StepContext& context, const Refinement& refinement);
 
 // The pixels' verdicts on a refined pose.

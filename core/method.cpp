@@ -23,6 +23,7 @@ Method method_default() {
     method.start = Start::kPairs;
     method.start_candidates = 300;
     method.start_draws = 10000;
+    method.step.max_rays = 400;
     method.start_step.rounds = 2;
     method.start_step.max_rays = 400;
     method.start_step.max_distance_diameters = 0.2;
@@ -67,6 +68,7 @@ void validate(const Economy& economy) {
     check_option("economy.kld_error", economy.kld_error, 1e-6, 10.0);
     check_option("economy.step_rays", economy.step_rays, 1, 1e7);
     check_option("economy.rays", economy.rays, 1, 1e7);
+    check_option("economy.fit_rays", economy.fit_rays, 1, 1e7);
     check_option("economy.rounds", economy.rounds, 1, 100);
     check_option("economy.rivals", economy.rivals, 0, 1e5);
 }

@@ -27,7 +27,7 @@ struct GradientStep {
 // What the default method adds to the paper's filter. Each part is off at 0.
 struct Refinement {
     int modes = 0;                               // best distinct modes of the swarm that are refined every frame
-    int rounds = 5;                              // each with a view cast anew
+    int rounds = 5;                              // the view is cast anew every other round
     int max_rays = 6000;                         // of a refined view
     double first_extra_sigma_diameters = 0.006;  // halved every round
     double cost_sigma_diameters = 0.002;         // tolerance of the cost that decides between modes
@@ -48,12 +48,13 @@ struct Refinement {
 // 2003). At the start, after a loss and while a rival is not ruled out everything is as without.
 struct Economy {
     bool on = false;
-    int min_particles = 12;  // for a swarm of one mode
+    int min_particles = 8;  // for a swarm of one mode
     double kld_error =
         0.15;             // bound on the Kullback-Leibler distance between swarm and posterior, with 99 % confidence
-    int step_rays = 200;  // of a particle's view
-    int rays = 1500;      // of a refined view
-    int rounds = 3;       // of refinement
+    int step_rays = 128;  // of a particle's view, and of a rival's
+    int rays = 800;       // of a refined view
+    int rounds = 2;       // of refinement
+    int fit_rays = 2400;  // of the fine fit's view
     int rivals = 32;
 };
 

@@ -67,20 +67,34 @@ Eigen::Vector3f Observation::normal_at(int pixel, int reach) const {
     return (towards_camera / length).cast<float>();
 }
 
-// Whole rows at a time: this runs over every pixel of every frame.
-void Observation::take_pixels(const std::vector<float>& depth_m, const std::optional<Mask>& mask) {
+namespace {
+
+// Loops without branches over plain arrays, which the compiler turns into vector instructions: they run over every
+// pixel of every frame.
+void keep_in_range(float* depth_m, std::size_t count, float least_m, float most_m) {
+    for (std::size_t p = 0; p < count; ++p)
+        depth_m[p] = (depth_m[p] >= least_m) & (depth_m[p] <= most_m) ? depth_m[p] : 0.0F;  // 0 for NaN
+}
+
+void set_states(const float* depth_m, const std::uint8_t* mask, std::size_t count, PixelState* states) {
     constexpr auto kCandidate = static_cast<std::uint8_t>(PixelState::kCandidate);
     constexpr auto kBackground = static_cast<std::uint8_t>(PixelState::kBackground);
     static_assert(static_cast<int>(PixelState::kNoDepth) == 0);
-    const std::size_t count = depth_m.size();
-    depth_m_.resize(count);
-    std::vector<std::uint8_t> states(count, kCandidate);
-    if (mask) {
-        for (std::size_t p = 0; p < count; ++p) states[p] = mask->value[p] != 0 ? kCandidate : kBackground;
+    for (std::size_t p = 0; p < count; ++p) {
+        const std::uint8_t measured = mask[p] != 0 ? kCandidate : kBackground;
+        states[p] = static_cast<PixelState>(depth_m[p] > 0.0F ? measured : 0);
     }
-    for (std::size_t p = 0; p < count; ++p) depth_m_[p] = in_range(depth_m[p], sensor_) ? depth_m[p] : 0.0F;
-    states_.resize(count);
-    for (std::size_t p = 0; p < count; ++p) states_[p] = static_cast<PixelState>(depth_m_[p] > 0.0F ? states[p] : 0);
+}
+
+}  // namespace
+
+void Observation::take_pixels(const std::vector<float>& depth_m, const std::optional<Mask>& mask) {
+    depth_m_ = depth_m;
+    keep_in_range(depth_m_.data(), depth_m_.size(), static_cast<float>(sensor_.min_range_m),
+                  static_cast<float>(sensor_.max_range_m));
+    states_.resize(depth_m_.size());
+    const std::vector<std::uint8_t> everything(mask ? 0 : depth_m_.size(), 1);
+    set_states(depth_m_.data(), mask ? mask->value.data() : everything.data(), depth_m_.size(), states_.data());
 }
 
 void Observation::find_candidates() {
