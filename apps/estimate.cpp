@@ -65,7 +65,9 @@ PoseEstimator start_estimator(const EstimateOptions& options, const Mesh& mesh, 
     EstimatorSetup setup;
     setup.method = options.method;
     setup.views = options.views;
-    setup.particles = options.particles;
+    setup.particles = options.particles.value_or(setup.particles);
+    setup.adaptive = !options.particles;
+    setup.budget_s = 1e-3 * options.budget_ms;
     setup.threads = options.threads;
     setup.seed = options.seed;
     setup.symmetries = choose_symmetries(options, mesh, shared);
@@ -85,9 +87,11 @@ RunDescription describe(const EstimateOptions& options, const FrameSource& sourc
             options.method,
             source.scene_id(),
             options.model.object,
-            options.particles,
+            options.particles.value_or(EstimatorSetup{}.particles),
+            !options.particles,
             options.seed,
-            tolerance_of(options)};
+            tolerance_of(options),
+            1e-3 * options.budget_ms};
 }
 
 // What the frames lack for what was asked, before hours are spent.

@@ -36,7 +36,15 @@ void add_estimator_options(CLI::App& command, EstimateOptions& options) {
                     "Of the part: auto (those of models_info.json where it has any, else as the mesh shows them), "
                     "declared (those of models_info.json alone) or none")
         ->check(CLI::IsMember(symmetry_choices()));
-    command.add_option("--particles", options.particles, "Number of particles")->check(CLI::Range(1, 1000000));
+    command
+        .add_option("--particles", options.particles,
+                    "Number of particles, the same in every frame [200, and fewer while one mode holds]")
+        ->check(CLI::Range(1, 1000000));
+    command
+        .add_option("--budget-ms", options.budget_ms,
+                    "Time for a frame: particles, rivals and starts are left out to keep within it, and results then "
+                    "depend on the machine [0: as long as it takes]")
+        ->check(CLI::Range(0.0, 1e6));
     command.add_option("--threads", options.threads, "Threads; 0: all. Results do not depend on it")
         ->check(CLI::Range(0, 4096));
     command.add_option("--seed", options.seed, "Seed of all random draws");

@@ -19,7 +19,7 @@ struct EstimateOptions {
     ModelOptions model;
     OutputOptions outputs;
     std::string views = "raycast", method = "default", symmetries = "auto";
-    int particles = EstimatorOptions{}.num_particles;
+    std::optional<int> particles;  // not given: up to the usual number, fewer while one mode holds
     int threads = EstimatorOptions{}.num_threads;
     std::uint64_t seed = EstimatorOptions{}.seed;
     bool no_mask = false, no_control = false;
@@ -28,6 +28,7 @@ struct EstimateOptions {
     std::filesystem::path initial_pose;
     double initial_sigma_mm = 10.0, initial_sigma_deg = 5.0;
     double tolerance_mm = 2.0, tolerance_deg = 1.0;
+    double budget_ms = 0.0;  // 0: none
 };
 
 void add_estimate_options(CLI::App& command, EstimateOptions& options);

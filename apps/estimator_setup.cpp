@@ -28,7 +28,7 @@ const std::vector<std::string>& residual_names() {
 }
 
 const std::vector<std::string>& parts_of_method() {
-    static const std::vector<std::string> names = {"nothing", "fine_fit", "outline", "pairs", "rivals"};
+    static const std::vector<std::string> names = {"nothing", "fine_fit", "outline", "pairs", "rivals", "economy"};
     return names;
 }
 
@@ -53,13 +53,15 @@ namespace {
 void leave_out(const std::string& part, Method& method) {
     const auto& parts = parts_of_method();
     if (std::find(parts.begin(), parts.end(), part) == parts.end())
-        throw std::invalid_argument("without '" + part + "': take nothing, fine_fit, outline, pairs or rivals");
+        throw std::invalid_argument("without '" + part +
+                                    "': take nothing, fine_fit, outline, pairs, rivals or economy");
     if (part != "nothing" && method.refinement.modes == 0)
         throw std::invalid_argument("without " + part + ": only the default method has it");
     if (part == "fine_fit") method.refinement.fusion = false;
     if (part == "outline") method.refinement.outline = false;
     if (part == "pairs") method.start = Start::kSurface;
     if (part == "rivals") method.refinement.rivals = 0;
+    if (part == "economy") method.economy.on = false;
 }
 
 }  // namespace
@@ -69,6 +71,7 @@ Method make_method(const EstimatorSetup& setup) {
         throw std::invalid_argument("method '" + setup.method + "': take default or paper");
     }
     Method method = setup.method == "paper" ? method_paper() : method_default();
+    if (!setup.adaptive) method.economy.min_particles = setup.particles;
     if (setup.rounds && setup.gradient) {
         check_option("rounds (of the gradient step)", *setup.rounds, 1, 100);
         method.step.rounds = *setup.rounds;
@@ -108,6 +111,7 @@ PoseEstimator make_estimator(const EstimatorSetup& setup, std::shared_ptr<const 
     EstimatorOptions options;
     options.method = make_method(setup);
     options.num_particles = setup.particles;
+    options.budget_s = setup.budget_s;
     options.num_threads = setup.threads;
     options.seed = setup.seed;
     options.symmetries = setup.symmetries;

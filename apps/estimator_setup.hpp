@@ -25,13 +25,16 @@ const std::vector<std::string>& residual_names();
 
 // "nothing"; "fine_fit": the chosen mode as it was refined, without the sensor's errors and the track; "outline": a
 // face laid into a larger one counts as found; "pairs": starts on single points of the surface and around the centroid;
-// "rivals": no other modes than the swarm's are tried.
+// "rivals": no other modes than the swarm's are tried; "economy": as many particles and rays while one mode holds as at
+// the start.
 const std::vector<std::string>& parts_of_method();
 
 struct EstimatorSetup {
     std::string method = "default";
     std::string views = "raycast";
     int particles = EstimatorOptions{}.num_particles;
+    bool adaptive = true;   // the default method's: fewer particles while one mode holds
+    double budget_s = 0.0;  // for an update; 0: none
     int threads = EstimatorOptions{}.num_threads;
     std::uint64_t seed = EstimatorOptions{}.seed;
 

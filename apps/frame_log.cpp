@@ -51,6 +51,15 @@ Json seconds_of(const UpdateSeconds& seconds) {
             {"likelihood_all_threads", seconds.stages.likelihood}};
 }
 
+// What a frame was made with.
+Json effort_of(const Effort& effort) {
+    return {{"starts", effort.starts},
+            {"particles", effort.particles},
+            {"rivals", effort.rivals},
+            {"modes", effort.modes},
+            {"reduced_for_budget", effort.reduced_for_budget}};
+}
+
 Json modes_of(const std::vector<Mode>& modes) {
     Json list = Json::array();
     for (const Mode& mode : modes) {
@@ -123,6 +132,8 @@ std::string first_log_line(const RunDescription& run) {
          {"views", run.views},
          {"method", run.method},
          {"particles", run.particles},
+         {"adaptive", run.adaptive},
+         {"budget_s", run.budget_s},
          {"seed", run.seed},
          {"tolerance_m", run.tolerance.translation_m},
          {"tolerance_rad", run.tolerance.rotation_rad}});
@@ -177,6 +188,7 @@ std::string frame_log_line(const FrameReport& frame, const UpdateResult& result)
         line["cost"] = result.cost;
     }
     line["effective_sample_size"] = result.effective_sample_size;
+    line["effort"] = effort_of(result.effort);
     line["resampled"] = result.resampled;
     line["mode_replaced"] = result.mode_replaced;
     line["points_observed"] = result.points_observed;

@@ -46,7 +46,7 @@ Json options_json(const EstimateOptions& options) {
             {"views", options.views},
             {"method", options.method},
             {"symmetries", options.symmetries},
-            {"particles", options.particles},
+            {"particles", number_json(options.particles)},
             {"threads", options.threads},
             {"seed", options.seed},
             {"initial-pose", path_json(options.initial_pose)},
@@ -54,6 +54,7 @@ Json options_json(const EstimateOptions& options) {
             {"initial-sigma-deg", options.initial_sigma_deg},
             {"tolerance-mm", options.tolerance_mm},
             {"tolerance-deg", options.tolerance_deg},
+            {"budget-ms", options.budget_ms},
             {"run", path_json(options.outputs.run)},
             {"out", path_json(options.outputs.out)},
             {"log", path_json(options.outputs.log)},
@@ -108,7 +109,7 @@ EstimateOptions options_of(const JsonValue& json) {
     options.fps = json.at("fps").number();
     options.views = json.at("views").text();
     options.method = json.at("method").text();
-    options.particles = json.at("particles").integer();
+    options.particles = integer_of(json, "particles");
     options.threads = json.at("threads").integer();
     options.seed = json.at("seed").unsigned_integer();
     options.initial_pose = text_of(json, "initial-pose");
@@ -116,6 +117,7 @@ EstimateOptions options_of(const JsonValue& json) {
     options.initial_sigma_deg = json.at("initial-sigma-deg").number();
     options.tolerance_mm = json.at("tolerance-mm").number();
     options.tolerance_deg = json.at("tolerance-deg").number();
+    if (const auto budget = json.find("budget-ms")) options.budget_ms = budget->number();
     options.outputs = {text_of(json, "run"),        text_of(json, "out"),      text_of(json, "log"),
                        text_of(json, "trajectory"), text_of(json, "pictures"), text_of(json, "trajectory-frame")};
     return options;

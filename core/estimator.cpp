@@ -24,6 +24,7 @@ void validate(const EstimatorOptions& options) {
     validate(options.method);
     check_option("num_particles", options.num_particles, 1, 1e6);
     check_option("num_threads", options.num_threads, 0, 4096);
+    check_option("budget_s", options.budget_s, 0.0, 1e6);
     check_option("min_candidates", options.min_candidates, 1, 1e9);
     check_option("tolerance.translation_m", options.tolerance.translation_m, 1e-9, 1e6);
     check_option("tolerance.rotation_rad", options.tolerance.rotation_rad, 1e-9, 3.15);
@@ -48,7 +49,7 @@ const char* to_string(UpdateStatus status) {
 
 PoseEstimator::PoseEstimator(std::shared_ptr<const ViewGenerator> views, std::shared_ptr<const PoseSolver> solver,
                              const EstimatorOptions& options)
-    : views_(std::move(views)), solver_(std::move(solver)), options_(options) {
+    : views_(std::move(views)), solver_(std::move(solver)), options_(options), budget_(options.budget_s) {
     if (!views_ || !solver_)
         throw std::invalid_argument("PoseEstimator: a view generator and a pose solver are needed");
     validate(options_);
@@ -57,7 +58,7 @@ PoseEstimator::PoseEstimator(std::shared_ptr<const ViewGenerator> views, std::sh
 }
 
 UpdateResult PoseEstimator::update(const Observation& observation, const std::optional<Pose>& now_from_before) {
-    const Clock::time_point begin = Clock::now();
+    update_began_ = Clock::now();
     UpdateResult result;
     ++step_;
     result.points_observed = observation.num_candidates();
@@ -76,15 +77,23 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
     }
     searching_ = false;
     patches_.reset();
-    result.num_particles = particles_.size();
     result.status = seen ? UpdateStatus::kEstimated : tracked_ ? UpdateStatus::kPredicted : UpdateStatus::kNoPose;
     result.verdict = Verdict::kLost;
     if (tracked_) describe_estimate(observation, result);
     fine_.clear();
     constexpr double kConvincing = 0.8;
     frames_lost_ = result.verdict == Verdict::kLost || result.pixels.agreement() < kConvincing ? frames_lost_ + 1 : 0;
-    result.seconds.total = seconds_since(begin);
+    UpdateSeconds& seconds = result.seconds;
+    seconds.total = seconds_since(update_began_);
+    budget_.took(Stage::kFit, 1, seconds.total - seconds.start - seconds.particles - seconds.refinement);
     return result;
+}
+
+// What of `wanted` fits into the budget.
+int PoseEstimator::affordable(Stage stage, int wanted, int least, UpdateResult& result) const {
+    const int count = budget_.affordable(stage, wanted, least, seconds_since(update_began_));
+    if (count < wanted) result.effort.reduced_for_budget = true;
+    return count;
 }
 
 void PoseEstimator::reset() {
@@ -110,7 +119,7 @@ void PoseEstimator::predict(const std::optional<Pose>& now_from_before, UpdateRe
     const Method& method = options_.method;
     if (particles_.size() == 0) return;
     std::optional<Pose> motion;
-    const int wanted = particles_wanted();
+    const int wanted = affordable(Stage::kParticles, particles_wanted(), 1, result);
     if (wanted != particles_.size() ||
         effective_sample_size(particles_.weights) < method.resample_below * particles_.size()) {
         particles_ = systematic_resample(particles_, wanted, options_.seed, step_);
@@ -156,7 +165,9 @@ void PoseEstimator::move_particles(const Observation& observation, UpdateResult&
     }
     update_weights(particles_, likelihoods);
     result.effective_sample_size = effective_sample_size(particles_.weights);
+    result.effort.particles = particles_.size();
     result.seconds.particles = seconds_since(begin);
+    budget_.took(Stage::kParticles, particles_.size(), result.seconds.particles);
 }
 
 std::vector<MovedParticle> PoseEstimator::move_all(const std::vector<Pose>& poses, const Observation& observation,

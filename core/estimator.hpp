@@ -1,6 +1,7 @@
 // The estimator: the paper's particle filter over SE(3), one observation at a time.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <list>
 #include <memory>
@@ -17,6 +18,7 @@
 #include "core/start.hpp"
 #include "core/start_pairs.hpp"
 #include "core/symmetry.hpp"
+#include "core/time_budget.hpp"
 #include "core/track.hpp"
 #include "core/verdict.hpp"
 #include "core/view_generator.hpp"
@@ -32,6 +34,8 @@ struct EstimatorOptions {
     Symmetries symmetries;     // of the part
     Tolerance tolerance;       // of the verdict
     MotionNoise motion_noise;  // of the arm
+    double budget_s = 0.0;  // for an update, elapsed; particles, rivals, modes and starts are left out to keep within
+                            // it, and results then depend on the machine's speed. 0: as long as it takes
 };
 
 // Throws std::invalid_argument naming field, value and bound.
@@ -50,6 +54,15 @@ struct UpdateSeconds {
     double start = 0.0, particles = 0.0, refinement = 0.0, total = 0.0;  // elapsed
 };
 
+// What an update was made with.
+struct Effort {
+    int starts = 0;  // candidates of a search; 0: none was made
+    int particles = 0;
+    int rivals = 0;
+    int modes = 0;                    // refined
+    bool reduced_for_budget = false;  // more would have been made with more time
+};
+
 struct UpdateResult {
     UpdateStatus status = UpdateStatus::kNoPose;
     Pose camera_from_object;                 // the MAP; meaningless where there is no pose
@@ -60,11 +73,11 @@ struct UpdateResult {
     std::vector<Mode> modes;                 // refined, best first; the default method's
     Observability observability;             // of this frame alone; the tracked pose may be known better
     PixelCost pixels;                        // how the estimate's rays compare with the depth image
-    int num_particles = 0;                   // in this update
-    double effective_sample_size = 0.0;      // 1..number of particles, after weighting
-    bool resampled = false;                  // before this update's propagation
-    bool mode_replaced = false;              // another mode explains the observation better than the tracked one
-    int points_observed = 0;                 // candidate pixels
+    Effort effort;
+    double effective_sample_size = 0.0;  // 1..number of particles, after weighting
+    bool resampled = false;              // before this update's propagation
+    bool mode_replaced = false;          // another mode explains the observation better than the tracked one
+    int points_observed = 0;             // candidate pixels
     StepCounts counts;
     UpdateSeconds seconds;
 };
@@ -92,12 +105,13 @@ class PoseEstimator {
   private:
     void predict(const std::optional<Pose>& now_from_before, UpdateResult& result);
     void start(const Observation& observation, UpdateResult& result);
-    ParticleSet start_where_surfaces_meet(const Observation& observation, int count) const;
+    ParticleSet start_where_surfaces_meet(const Observation& observation, int count, int draws) const;
     void keep_best_starts(const Observation& observation, UpdateResult& result);
     void move_particles(const Observation& observation, UpdateResult& result);
     // Both choose the estimate; false: no pose shows the object in this observation.
     bool take_map(const Observation& observation, UpdateResult& result);
     bool take_refined_mode(const Observation& observation, UpdateResult& result);
+    int affordable(Stage stage, int wanted, int least, UpdateResult& result) const;
     bool search_again() const;
     std::vector<Mode> near_modes(const std::vector<Mode>& modes) const;
     void bring_to_one_representative(std::vector<Mode>& modes) const;
@@ -107,9 +121,9 @@ class PoseEstimator {
     GradientStep step_now() const;
     Refinement refinement_now() const;
     void weigh_rivals(const UpdateResult& result, bool tried);
-    std::vector<Mode> modes_to_refine(const Observation& observation, UpdateResult& result) const;
+    std::vector<Mode> modes_to_refine(const Observation& observation, UpdateResult& result);
     std::vector<Mode> best_rivals(const std::vector<Mode>& leaders, const Observation& observation,
-                                  UpdateResult& result) const;
+                                  UpdateResult& result);
     std::vector<MovedParticle> move_all(const std::vector<Pose>& poses, const Observation& observation,
                                         const GradientStep& step, RandomPurpose purpose, UpdateResult& result) const;
     std::vector<Mode> refine_all(const std::vector<Mode>& modes, const Observation& observation, UpdateResult& result);
@@ -132,6 +146,8 @@ class PoseEstimator {
     std::optional<AnchorPairs> pairs_;
     std::optional<PatchGrid> patches_;  // while searching
     std::list<ObservedGrid> fine_;      // during an update, the grids of refined views
+    TimeBudget budget_;
+    std::chrono::steady_clock::time_point update_began_;
     ParticleSet particles_;
     std::optional<Mode> tracked_;           // the estimate of the last update
     std::optional<Track> track_;            // the same with its spread; the default method's

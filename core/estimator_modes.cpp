@@ -14,7 +14,11 @@ namespace nearpose {
 bool PoseEstimator::take_refined_mode(const Observation& observation, UpdateResult& result) {
     const auto begin = std::chrono::steady_clock::now();
     const Refinement refinement = refinement_now();
-    const std::vector<Mode> refined = refine_all(modes_to_refine(observation, result), observation, result);
+    std::vector<Mode> modes = modes_to_refine(observation, result);
+    const int count = affordable(Stage::kModes, static_cast<int>(modes.size()), 1, result);
+    const bool rivals_tried = result.effort.rivals > 0 && count == static_cast<int>(modes.size());
+    modes.resize(count);
+    const std::vector<Mode> refined = refine_all(modes, observation, result);
     const Eigen::Vector3d centre = views_->extent().centre_in_object();
     result.modes = distinct_modes(refined, static_cast<int>(refined.size()), centre, mode_distance());
     set_weights(result.modes);
@@ -30,7 +34,7 @@ bool PoseEstimator::take_refined_mode(const Observation& observation, UpdateResu
     if (result.mode_replaced) rivals_tried_ = false;
     tracked_ = chosen;
     if (refinement.fusion) correct_tracked(chosen, result.mode_replaced, observation);
-    weigh_rivals(result, refinement.rivals > 0 && rivals_due());
+    weigh_rivals(result, rivals_tried);
     result.score = std::clamp(1.0 - chosen.cost, 0.0, 1.0);
     // The swarm learns of it in place of its least likely member.
     const auto worst = std::max_element(particles_.weights.begin(), particles_.weights.end());
@@ -43,9 +47,13 @@ std::vector<Mode> PoseEstimator::refine_all(const std::vector<Mode>& modes, cons
                                             UpdateResult& result) {
     const Refinement refinement = refinement_now();
     const StepContext context = fine_context(refinement.max_rays, observation);
+    const auto begin = std::chrono::steady_clock::now();
+    const int count = static_cast<int>(modes.size());
     std::vector<MovedParticle> moved(modes.size());
-    parallel_for(static_cast<int>(modes.size()), options_.num_threads,
+    parallel_for(count, options_.num_threads,
                  [&](int k) { moved[k] = refine_mode(modes[k].camera_from_object, context, refinement); });
+    result.effort.modes = count;
+    budget_.took(Stage::kModes, count, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
     std::vector<Mode> refined;
     for (const MovedParticle& mode : moved) {
         refined.push_back({mode.camera_from_object, mode.cost, mode.support, mode.log_evidence});
@@ -56,7 +64,7 @@ std::vector<Mode> PoseEstimator::refine_all(const std::vector<Mode>& modes, cons
 }
 
 // The tracked mode first (where there is one), then the swarm's, then the rivals.
-std::vector<Mode> PoseEstimator::modes_to_refine(const Observation& observation, UpdateResult& result) const {
+std::vector<Mode> PoseEstimator::modes_to_refine(const Observation& observation, UpdateResult& result) {
     const Refinement& refinement = options_.method.refinement;
     const Eigen::Vector3d centre = views_->extent().centre_in_object();
     std::vector<Mode> swarm;
@@ -126,8 +134,11 @@ void PoseEstimator::weigh_rivals(const UpdateResult& result, bool tried) {
 }
 
 std::vector<Mode> PoseEstimator::best_rivals(const std::vector<Mode>& leaders, const Observation& observation,
-                                             UpdateResult& result) const {
-    const Refinement refinement = refinement_now();
+                                             UpdateResult& result) {
+    const auto begin = std::chrono::steady_clock::now();
+    Refinement refinement = refinement_now();
+    refinement.rivals = affordable(Stage::kRivals, refinement.rivals, 0, result);
+    if (refinement.rivals == 0) return {};
     constexpr std::size_t kLeaders = 2;
     const std::size_t used = std::min(leaders.size(), kLeaders);
     std::vector<Pose> proposals;
@@ -140,6 +151,9 @@ std::vector<Mode> PoseEstimator::best_rivals(const std::vector<Mode>& leaders, c
     GradientStep step = options_.method.start_step;
     step.max_rays = std::min(step.max_rays, step_now().max_rays);
     const std::vector<MovedParticle> moved = move_all(proposals, observation, step, RandomPurpose::kRivals, result);
+    result.effort.rivals = static_cast<int>(moved.size());
+    budget_.took(Stage::kRivals, result.effort.rivals,
+                 std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
     std::vector<Mode> modes;
     for (const MovedParticle& rival : moved) modes.push_back({rival.camera_from_object, rival.cost, rival.support});
     return distinct_modes(modes, refinement.rival_modes, views_->extent().centre_in_object(), mode_distance());

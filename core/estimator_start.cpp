@@ -12,28 +12,32 @@ namespace nearpose {
 void PoseEstimator::start(const Observation& observation, UpdateResult& result) {
     const auto begin = std::chrono::steady_clock::now();
     const Method& method = options_.method;
-    const int count = std::max(method.start_candidates, options_.num_particles);
-    particles_ = method.start == Start::kSphere ? ParticleSet{} : start_where_surfaces_meet(observation, count);
+    const int wanted = std::max(method.start_candidates, options_.num_particles);
+    constexpr int kLeast = 20;
+    const int count = affordable(Stage::kSearch, wanted, kLeast, result);  // the next search tries others
+    const auto draws = static_cast<int>(static_cast<double>(method.start_draws) * count / wanted);
+    particles_ = method.start == Start::kSphere ? ParticleSet{} : start_where_surfaces_meet(observation, count, draws);
     if (particles_.size() == 0)
         particles_ = start_on_sphere(observation, views_->extent(), count, options_.seed, step_);
     if (method.start_candidates > 0) keep_best_starts(observation, result);
     particles_.weights.assign(particles_.poses.size(), 0.0);
+    result.effort.starts = count;
     result.seconds.start = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    budget_.took(Stage::kSearch, count, result.seconds.start);
 }
 
 // A whole object in view is found from the centroid of what is seen, a part of one from its surface, and one among
 // other things from pairs of oriented points: a share of the starts each. Where nothing is segmented there is no
 // centroid to go by. Empty if no surface shows a normal.
-ParticleSet PoseEstimator::start_where_surfaces_meet(const Observation& observation, int count) const {
+ParticleSet PoseEstimator::start_where_surfaces_meet(const Observation& observation, int count, int draws) const {
     const Method& method = options_.method;
     ParticleSet particles;
     if (pairs_ && patches_) {
         // Where nothing is segmented most draws miss the object.
         constexpr int kDrawsUnsegmented = 2;
         const bool segmented = observation.segmented();
-        const PairStartOptions start{(segmented ? 1 : kDrawsUnsegmented) * method.start_draws,
-                                     segmented ? count / 2 : 2 * count / 3, static_cast<std::uint64_t>(count),
-                                     options_.num_threads};
+        const PairStartOptions start{(segmented ? 1 : kDrawsUnsegmented) * draws, segmented ? count / 2 : 2 * count / 3,
+                                     static_cast<std::uint64_t>(count), options_.num_threads};
         particles.poses = start_on_pairs(observation, *pairs_, *patches_, start, options_.seed, step_);
     }
     const int left = count - particles.size();
@@ -66,7 +70,8 @@ void PoseEstimator::keep_best_starts(const Observation& observation, UpdateResul
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(),
                      [&](int a, int b) { return moved[a].negative_log_likelihood < moved[b].negative_log_likelihood; });
-    order.resize(std::min<std::size_t>(order.size(), options_.num_particles));
+    const int kept = affordable(Stage::kParticles, options_.num_particles, 1, result);
+    order.resize(std::min<std::size_t>(order.size(), kept));
     particles_.poses.clear();
     for (const int index : order) particles_.poses.push_back(moved[index].camera_from_object);
 }

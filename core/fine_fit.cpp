@@ -201,7 +201,10 @@ Problem problem_of(const NormalEquations& equations, const SensorField& field, c
     problem.information.diagonal().head<3>().array() += 1.0;
     problem.information.diagonal().segment<3>(3).array() += 1.0 / (diameter_m * diameter_m);
     const auto unknowns = static_cast<Eigen::Index>(problem.active.size()) - 6;
-    const Eigen::VectorXd all = prior_variances(field, sensor), all_fitted = prior_variances(field, fitted);
+    // An image that is noisier than the sensor's model is no better in what its pixels share.
+    const double worse = std::max(1.0, context.observation.noise_factor());
+    const Eigen::VectorXd all = worse * worse * prior_variances(field, sensor);
+    const Eigen::VectorXd all_fitted = prior_variances(field, fitted);
     problem.variances.resize(unknowns);
     problem.fitted_variances.resize(unknowns);
     for (Eigen::Index i = 0; i < unknowns; ++i) {

@@ -129,7 +129,7 @@ struct EmbreeScene::Impl {
     Mesh mesh;
     // Of every triangle, or of every disc of an oriented cloud: computing them for each ray takes as long as the ray.
     // Empty where a disc faces the ray.
-    std::vector<Eigen::Vector3d> normals;  // of any length
+    std::vector<Eigen::Vector3d> plane_normals;  // of any length
     std::vector<Eigen::Vector3f> unit_normals;
     ModelExtent extent;
     ErrorLog errors;
@@ -212,14 +212,14 @@ void EmbreeScene::Impl::attach_discs() {
 
 void EmbreeScene::Impl::set_normals() {
     for (const Eigen::Vector3f& normal : mesh.vertex_normals_in_object)
-        if (mesh.is_cloud()) normals.push_back(normal.cast<double>());
+        if (mesh.is_cloud()) plane_normals.push_back(normal.cast<double>());
     for (const auto& triangle : mesh.triangles) {
         const auto vertex = [&](int k) {
             return Eigen::Vector3d(mesh.vertices_in_object[static_cast<std::size_t>(triangle[k])].cast<double>());
         };
-        normals.push_back((vertex(1) - vertex(0)).cross(vertex(2) - vertex(0)));
+        plane_normals.push_back((vertex(1) - vertex(0)).cross(vertex(2) - vertex(0)));
     }
-    for (const Eigen::Vector3d& normal : normals) unit_normals.push_back(normal.normalized().cast<float>());
+    for (const Eigen::Vector3d& normal : plane_normals) unit_normals.push_back(normal.normalized().cast<float>());
 }
 
 Eigen::Vector3d EmbreeScene::Impl::point_on(int primitive) const {
@@ -257,8 +257,8 @@ void EmbreeScene::Impl::cast_block(const RayBundle& bundle, int first_u, int fir
 // computed again in double; where it does not agree (a ray within the plane) Embree's stays.
 void EmbreeScene::Impl::append(const RayBundle& bundle, int u, int v, const Hit& hit, RayHits& hits) const {
     const Eigen::Vector3d direction = bundle.direction(u, v);
-    const bool faces_ray = normals.empty();
-    const Eigen::Vector3d normal = faces_ray ? Eigen::Vector3d(-direction) : normals[hit.primitive];
+    const bool faces_ray = plane_normals.empty();
+    const Eigen::Vector3d normal = faces_ray ? Eigen::Vector3d(-direction) : plane_normals[hit.primitive];
     const double slope = normal.dot(direction);
     const double plane_depth = normal.dot(point_on(hit.primitive) - bundle.origin_in_object) / slope;
     const bool agrees = std::abs(plane_depth - hit.depth) <= 1e-4 * hit.depth;  // false for NaN

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "apps/data_set/png_file.hpp"
+#include "apps/estimator_setup.hpp"
 #include "apps/report/cloud_sample.hpp"
 #include "apps/report/depth_picture.hpp"
 #include "apps/report/quantised.hpp"
@@ -125,7 +126,7 @@ Json run_json(const program::RunRecord& record, const RunInput& input) {
             {"scene_id", record.scene_id},
             {"method", options.method},
             {"views", options.views},
-            {"particles", options.particles},
+            {"particles", options.particles.value_or(program::EstimatorSetup{}.particles)},
             {"seed", options.seed},
             {"mask", !options.no_mask && input.source->notice().empty()},
             {"motion", !options.no_control},

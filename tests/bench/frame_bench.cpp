@@ -40,7 +40,7 @@ void pipeline(benchmark::State& state) {
     state.counters["last_error_mm"] = last_error_mm;
 }
 
-void ours(benchmark::State& state) {
+void ours(benchmark::State& state, Count count) {
     const int threads = static_cast<int>(state.range(0));
     const Approach& approach = engine_block_approach();
     const auto views = std::make_shared<EmbreeViewGenerator>(engine_block());
@@ -49,7 +49,7 @@ void ours(benchmark::State& state) {
     double last_error_mm = 0.0;
     for (auto _ : state) {
         state.PauseTiming();
-        PoseEstimator estimator = make_estimator(views, kParticles, threads);
+        PoseEstimator estimator = make_estimator(views, kParticles, threads, count);
         track(estimator, approach, 0);
         state.ResumeTiming();
         for (int k = 1; k <= kTracked; ++k) {
@@ -66,10 +66,16 @@ void ours(benchmark::State& state) {
 }
 
 BENCHMARK(pipeline)->Name("frame/naive")->Iterations(1)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(ours)
+BENCHMARK_CAPTURE(ours, fixed, Count::kFixed)
     ->Name("frame/ours/threads")
     ->Arg(1)
     ->Arg(2)
+    ->Iterations(1)
+    ->MeasureProcessCPUTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(ours, adaptive, Count::kAdaptive)
+    ->Name("frame/adaptive/threads")
+    ->Arg(1)
     ->Iterations(1)
     ->MeasureProcessCPUTime()
     ->Unit(benchmark::kMillisecond);

@@ -8,10 +8,14 @@
 
 namespace nearpose::bench {
 
-// The default method with a fixed number of particles and three rounds each.
-inline PoseEstimator make_estimator(std::shared_ptr<const ViewGenerator> views, int num_particles, int num_threads) {
+enum class Count { kFixed, kAdaptive };  // adaptive: fewer particles while one mode holds
+
+// The default method, three rounds for each particle.
+inline PoseEstimator make_estimator(std::shared_ptr<const ViewGenerator> views, int num_particles, int num_threads,
+                                    Count count = Count::kFixed) {
     EstimatorOptions options;
     options.num_particles = num_particles;
+    if (count == Count::kFixed) options.method.economy.min_particles = num_particles;
     options.num_threads = num_threads;
     return PoseEstimator(std::move(views), std::make_shared<CeresPoseSolver>(), options);
 }

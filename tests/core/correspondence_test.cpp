@@ -19,7 +19,8 @@ const Pose kTruth{Eigen::Quaterniond(Eigen::AngleAxisd(2.6, Eigen::Vector3d(1, 0
 double sigma_of_pair(const Observation& observation, const Correspondences& pairs, std::size_t k) {
     const double depth_m = pairs.points_in_camera[k].z();
     const double normal_z = (kTruth.rotation * pairs.normals_in_object[k].cast<double>()).z();
-    return observation.sensor().sigma_along_normal_m(observation.sigma_m(depth_m), depth_m, normal_z, kCamera.fx);
+    return std::sqrt(
+        observation.sensor().variance_along_normal_m2(observation.sigma_m(depth_m), depth_m, normal_z, kCamera.fx));
 }
 
 Observation observe_part() {

@@ -298,6 +298,56 @@ TEST(Estimator, TellsANearlySymmetricPartApartOnlyWhereItsDetailIsInView) {
     }
 }
 
+TEST(Estimator, WhileOneModeHoldsFewParticlesDoAndAfterALossAllAreBack) {
+    PoseEstimator estimator(kPart, kSolver, small_options(method_default(), 0));
+    int fewest = 1000;
+    for (int frame = 0; frame < 10; ++frame) {
+        const UpdateResult result =
+            estimator.update(observe_at(frame), frame > 0 ? std::optional(motion_to(frame)) : std::nullopt);
+        EXPECT_LT(error_m(result, frame), 0.001) << frame;
+        if (frame < 5) {
+            EXPECT_EQ(result.effort.particles, 40) << frame;
+        }
+        EXPECT_GE(result.effort.particles, method_default().economy.min_particles);
+        EXPECT_EQ(result.effort.starts > 0, frame == 0) << frame;
+        EXPECT_FALSE(result.effort.reduced_for_budget);
+        fewest = std::min(fewest, result.effort.particles);
+    }
+    EXPECT_LT(fewest, 40);
+    estimator.update(observe_nothing(), {});
+    const UpdateResult after = estimator.update(observe_at(0), {});
+    EXPECT_EQ(after.effort.particles, 40);
+    EXPECT_GT(after.effort.starts, 0);
+    EXPECT_LT(error_m(after, 0), 0.001);
+}
+
+TEST(Estimator, AFixedNumberOfParticlesStays) {
+    EstimatorOptions options = small_options(method_default(), 0);
+    options.method.economy.min_particles = options.num_particles;
+    PoseEstimator estimator(kPart, kSolver, options);
+    for (int frame = 0; frame < 8; ++frame)
+        EXPECT_EQ(estimator.update(observe_at(frame), {}).effort.particles, options.num_particles) << frame;
+}
+
+TEST(Estimator, ABudgetThatIsAmpleChangesNothingAndATightOneDoesLess) {
+    const auto run = [](double budget_s) {
+        EstimatorOptions options = small_options(method_default(), 1);
+        options.budget_s = budget_s;
+        PoseEstimator estimator(kPart, kSolver, options);
+        std::vector<UpdateResult> results;
+        for (int frame = 0; frame < 3; ++frame) results.push_back(estimator.update(observe_at(frame), {}));
+        return results;
+    };
+    const std::vector<UpdateResult> without = run(0.0), ample = run(1e4), tight = run(1e-6);
+    for (int frame = 0; frame < 3; ++frame) {
+        EXPECT_EQ(without[frame].camera_from_object.translation, ample[frame].camera_from_object.translation);
+        EXPECT_FALSE(ample[frame].effort.reduced_for_budget);
+        EXPECT_TRUE(tight[frame].effort.reduced_for_budget);
+        EXPECT_LT(tight[frame].effort.particles, without[frame].effort.particles);
+        EXPECT_LE(tight[frame].effort.modes, 1);
+    }
+}
+
 TEST(Estimator, BadOptionsNameTheFieldAndTheBound) {
     const auto message = [](EstimatorOptions options) {
         try {

@@ -111,5 +111,14 @@ TEST(Particles, DiffusionHasTheAskedSpreadAboutTheCentre) {
     }
 }
 
+TEST(KldSampling, FollowsTheChiSquareQuantile) {
+    // 99 % quantile of chi-square with k - 1 degrees of freedom over 2 epsilon, to the approximation's few percent.
+    EXPECT_NEAR(kld_sample_size(2, 0.05), 6.635 / 0.1, 0.04 * 66);
+    EXPECT_NEAR(kld_sample_size(11, 0.05), 23.21 / 0.1, 0.01 * 232);
+    EXPECT_NEAR(kld_sample_size(101, 0.05), 135.8 / 0.1, 0.01 * 1358);
+    EXPECT_EQ(kld_sample_size(1, 0.05), 0);  // one cell is described by any number
+    EXPECT_NEAR(kld_sample_size(11, 0.1), 0.5 * kld_sample_size(11, 0.05), 1.0);
+}
+
 }  // namespace
 }  // namespace nearpose
