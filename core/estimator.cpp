@@ -77,6 +77,8 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
     }
     searching_ = false;
     patches_.reset();
+    close_up_.reset();
+    screened_.clear();
     result.status = seen ? UpdateStatus::kEstimated : tracked_ ? UpdateStatus::kPredicted : UpdateStatus::kNoPose;
     result.verdict = Verdict::kLost;
     if (tracked_) describe_estimate(observation, result);
@@ -308,8 +310,12 @@ PixelGrid PoseEstimator::grid_around(const Pose& camera_from_object, const Obser
 
 // Views are cast where the object may be: around the segmented pixels, or around the tracked pose, or everywhere.
 PixelGrid PoseEstimator::grid_for(const Observation& observation, int max_rays) const {
-    const bool around = !observation.segmented() && tracked_ && !searching_;
-    const PixelBox box = around ? box_around(tracked_->camera_from_object, observation) : observation.candidate_box();
+    if (observation.segmented()) return grid_in(observation.candidate_box(), kMargin, observation.camera(), max_rays);
+    PixelBox box = observation.candidate_box();
+    if (close_up_)
+        box = box_around(*close_up_, observation);
+    else if (tracked_ && !searching_)
+        box = box_around(tracked_->camera_from_object, observation);
     return grid_in(box, kMargin, observation.camera(), max_rays);
 }
 

@@ -105,12 +105,13 @@ class PoseEstimator {
   private:
     void predict(const std::optional<Pose>& now_from_before, UpdateResult& result);
     void start(const Observation& observation, UpdateResult& result);
-    ParticleSet start_where_surfaces_meet(const Observation& observation, int count, int draws) const;
+    ParticleSet start_where_surfaces_meet(const Observation& observation, int count, int draws);
     void keep_best_starts(const Observation& observation, UpdateResult& result);
     void move_particles(const Observation& observation, UpdateResult& result);
     // Both choose the estimate; false: no pose shows the object in this observation.
     bool take_map(const Observation& observation, UpdateResult& result);
     bool take_refined_mode(const Observation& observation, UpdateResult& result);
+    Mode look_closer(const Mode& chosen, const Observation& observation, UpdateResult& result);
     int affordable(Stage stage, int wanted, int least, UpdateResult& result) const;
     bool search_again() const;
     std::vector<Mode> near_modes(const std::vector<Mode>& modes) const;
@@ -145,6 +146,8 @@ class PoseEstimator {
     std::vector<SurfaceAnchor> anchors_;  // of the start on the surface; that on pairs has its own
     std::optional<AnchorPairs> pairs_;
     std::optional<PatchGrid> patches_;  // while searching
+    std::vector<Pose> screened_;        // while searching: the best starts on pairs
+    std::optional<Pose> close_up_;      // while searching: where the modes are told apart
     std::list<ObservedGrid> fine_;      // during an update, the grids of refined views
     TimeBudget budget_;
     std::chrono::steady_clock::time_point update_began_;

@@ -8,6 +8,13 @@
 #include "core/parallel.hpp"
 
 namespace nearpose {
+namespace {
+
+bool less_evident(const Mode& a, const Mode& b) {
+    return a.log_evidence < b.log_evidence;
+}
+
+}  // namespace
 
 // The tracked pose and the best modes of the swarm and among the rivals are refined side by side. The tracked one stays
 // unless another one's present cost is clearly better: one early wrong lock must not last.
@@ -16,31 +23,63 @@ bool PoseEstimator::take_refined_mode(const Observation& observation, UpdateResu
     const Refinement refinement = refinement_now();
     std::vector<Mode> modes = modes_to_refine(observation, result);
     const int count = affordable(Stage::kModes, static_cast<int>(modes.size()), 1, result);
-    const bool rivals_tried = result.effort.rivals > 0 && count == static_cast<int>(modes.size());
+    const bool all_refined = count == static_cast<int>(modes.size());
     modes.resize(count);
     const std::vector<Mode> refined = refine_all(modes, observation, result);
     const Eigen::Vector3d centre = views_->extent().centre_in_object();
     result.modes = distinct_modes(refined, static_cast<int>(refined.size()), centre, mode_distance());
+    const Mode& tracked = refined.front();
+    const Mode* most = &*std::max_element(result.modes.begin(), result.modes.end(), less_evident);
+    const bool replaced = !tracked_ || most->log_evidence > tracked.log_evidence + refinement.challenge_nats;
+    Mode chosen = replaced ? *most : tracked;
+    if (searching_ && !observation.segmented()) chosen = look_closer(chosen, observation, result);
     set_weights(result.modes);
     result.seconds.refinement = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    const Mode& best = result.modes.front();
-    const Mode& tracked = refined.front();
-    const bool replaced = !tracked_ || best.log_evidence > tracked.log_evidence + refinement.challenge_nats;
-    const Mode chosen = replaced ? best : tracked;
     if (chosen.support < refinement.min_support) return false;
     const bool other =
-        tracked_ && !same_mode(best.camera_from_object, tracked.camera_from_object, centre, mode_distance());
+        tracked_ && !same_mode(chosen.camera_from_object, tracked.camera_from_object, centre, mode_distance());
     result.mode_replaced = replaced && other;
     if (result.mode_replaced) rivals_tried_ = false;
     tracked_ = chosen;
     if (refinement.fusion) correct_tracked(chosen, result.mode_replaced, observation);
-    weigh_rivals(result, rivals_tried);
+    weigh_rivals(result, result.effort.rivals > 0 && all_refined);
     result.score = std::clamp(1.0 - chosen.cost, 0.0, 1.0);
     // The swarm learns of it in place of its least likely member.
     const auto worst = std::max_element(particles_.weights.begin(), particles_.weights.end());
     particles_.poses[worst - particles_.weights.begin()] = chosen.camera_from_object;
     *worst = particles_.weights[map_index(particles_.weights)];
     return true;
+}
+
+// Where nothing is segmented a search compares modes all over the image with few rays on each. The chosen one and those
+// around it are told apart by as many rays on the object alone. Gives the best of them.
+Mode PoseEstimator::look_closer(const Mode& chosen, const Observation& observation, UpdateResult& result) {
+    constexpr std::size_t kMost = 4;  // beside the chosen one and its likenesses
+    const Eigen::Vector3d centre = views_->extent().centre_in_object();
+    const double around_m = 0.5 * views_->extent().diameter_m();
+    std::vector<Mode> near = {chosen}, far;
+    const std::vector<Mode> alike = near_modes(near);
+    near.insert(near.end(), alike.begin(), alike.end());
+    const std::size_t most = near.size() + kMost;
+    for (const Mode& mode : result.modes) {
+        const double away_m = (mode.camera_from_object * centre - chosen.camera_from_object * centre).norm();
+        (away_m < around_m && near.size() < most ? near : far).push_back(mode);
+    }
+    close_up_ = chosen.camera_from_object;
+    if (options_.method.refinement.rivals > 0) {
+        const std::vector<Mode> rivals = best_rivals({chosen}, observation, result);
+        near.insert(near.end(), rivals.begin(), rivals.end());
+    }
+    bring_to_one_representative(near);
+    near = refine_all(near, observation, result);
+    for (Mode& mode : far) {  // has lost by as much as before
+        mode.log_evidence += near.front().log_evidence - chosen.log_evidence;
+        near.push_back(mode);
+    }
+    result.modes = distinct_modes(near, static_cast<int>(near.size()), centre, mode_distance());
+    std::stable_sort(result.modes.begin(), result.modes.end(),
+                     [](const Mode& a, const Mode& b) { return a.log_evidence > b.log_evidence; });
+    return *std::max_element(near.begin(), near.end(), less_evident);
 }
 
 std::vector<Mode> PoseEstimator::refine_all(const std::vector<Mode>& modes, const Observation& observation,
@@ -63,7 +102,8 @@ std::vector<Mode> PoseEstimator::refine_all(const std::vector<Mode>& modes, cons
     return refined;
 }
 
-// The tracked mode first (where there is one), then the swarm's, then the rivals.
+// The tracked mode first (where there is one), then the swarm's, then the best starts of a search, which wrong ones may
+// outdo until they are refined, then the rivals.
 std::vector<Mode> PoseEstimator::modes_to_refine(const Observation& observation, UpdateResult& result) {
     const Refinement& refinement = options_.method.refinement;
     const Eigen::Vector3d centre = views_->extent().centre_in_object();
@@ -77,7 +117,10 @@ std::vector<Mode> PoseEstimator::modes_to_refine(const Observation& observation,
         same_mode(leaders.front().camera_from_object, tracked_->camera_from_object, centre, mode_distance());
     if (tracked_ && !brought) modes.push_back(*tracked_);
     modes.insert(modes.end(), leaders.begin(), leaders.end());
-    if (refinement.rivals > 0 && rivals_due()) {
+    for (const Pose& pose : screened_) modes.push_back({pose, 1.0, 0.0});
+    // A search tries those of the mode that it has chosen.
+    const bool searching_all = searching_ && !observation.segmented();
+    if (refinement.rivals > 0 && rivals_due() && !searching_all) {
         const std::vector<Mode> near = near_modes(modes);
         const std::vector<Mode> rivals = best_rivals(modes, observation, result);
         modes.insert(modes.end(), near.begin(), near.end());

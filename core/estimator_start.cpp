@@ -29,16 +29,19 @@ void PoseEstimator::start(const Observation& observation, UpdateResult& result) 
 // A whole object in view is found from the centroid of what is seen, a part of one from its surface, and one among
 // other things from pairs of oriented points: a share of the starts each. Where nothing is segmented there is no
 // centroid to go by. Empty if no surface shows a normal.
-ParticleSet PoseEstimator::start_where_surfaces_meet(const Observation& observation, int count, int draws) const {
+ParticleSet PoseEstimator::start_where_surfaces_meet(const Observation& observation, int count, int draws) {
     const Method& method = options_.method;
     ParticleSet particles;
     if (pairs_ && patches_) {
         // Where nothing is segmented most draws miss the object.
-        constexpr int kDrawsUnsegmented = 2;
+        constexpr int kDrawsUnsegmented = 4;
+        constexpr std::ptrdiff_t kRefined = 8;
         const bool segmented = observation.segmented();
         const PairStartOptions start{(segmented ? 1 : kDrawsUnsegmented) * draws, segmented ? count / 2 : 2 * count / 3,
                                      static_cast<std::uint64_t>(count), options_.num_threads};
         particles.poses = start_on_pairs(observation, *pairs_, *patches_, start, options_.seed, step_);
+        const auto first = particles.poses.begin();
+        if (!segmented) screened_.assign(first, first + std::min<std::ptrdiff_t>(kRefined, particles.size()));
     }
     const int left = count - particles.size();
     const int on_sphere = observation.segmented() ? left / 2 : 0;

@@ -61,9 +61,10 @@ struct Economy {
 struct Method {
     Start start = Start::kSphere;
     int start_candidates = 0;  // random starts of which the best become the particles; 0: the particles themselves
-    int start_draws = 40000;   // of kPairs: pairs drawn, of which those that the image contradicts least are candidates
-    GradientStep start_step;   // taken by each of them
-    GradientStep step;         // taken by each particle in each frame
+    int start_draws = 10000;  // of kPairs, where the object is segmented: guesses drawn and screened, the best of which
+                              // are candidates and refined; several times as many where it is not
+    GradientStep start_step;  // taken by each of them
+    GradientStep step;        // taken by each particle in each frame
     Cost cost = Cost::kPixels;
     bool scale_by_overlap = true;  // of kOverlapMse: times m / n; false: the plain mean squared error of the pairs
     PixelCostOptions pixel_cost;

@@ -16,7 +16,8 @@ struct Patch {
     bool in_plane = false;                        // one of the largest in view
     // All in 0..1. A plane larger than any face of the model is none of its faces, and agreement there says little.
     double rarity = 0.0;   // how likely it is drawn for a start; 0 where no normal is known
-    double telling = 1.0;  // what agreement there says for a start close up, where one face may fill the view
+    double telling = 1.0;  // how likely it is among the points that starts are screened with, at any distance: a plane
+                           // that fills the view gives few
     double weight = 1.0;   // and otherwise
 };
 

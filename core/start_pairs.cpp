@@ -1,22 +1,18 @@
 #include "core/start_pairs.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
-#include <numeric>
 #include <optional>
 
 #include "core/parallel.hpp"
 #include "core/random.hpp"
+#include "core/start_screen.hpp"
 
 namespace nearpose {
 namespace {
 
 constexpr int kDistanceCells = 10, kAngleCells = 9;  // 20 degrees
 constexpr int kSecondPoints = 8;
-constexpr int kPulled = 2;            // poses for each that is wanted
 constexpr int kMaxPairAnchors = 500;  // their pairs are a quarter of a million
 
 int angle_cell(double cosine) {
@@ -67,11 +63,6 @@ struct Draw {
     }
 };
 
-struct Guess {
-    Pose camera_from_object;
-    double score = 0.0;  // share of the measured points that lie on the model; 0: no pose
-};
-
 // A measured point, as likely as it is rare.
 const SurfaceAnchor& draw_patch(const Draw& draw, RandomStream& random) {
     const double mark = random.uniform() * draw.chances.back();
@@ -120,52 +111,13 @@ std::optional<Pose> pose_from_pair(const Draw& draw, RandomStream& random) {
                 first.point_in_object.cast<double>() - rotation * anchor.point_in_object.cast<double>()};
 }
 
-// Poses of one cell are of one basin; the cells are coarse.
-std::array<int, 6> cell_of_pose(const Pose& pose, double diameter_m, const Eigen::Vector3d& centre) {
-    constexpr double kLength = 0.06, kTurn = 0.25;
-    const Eigen::Vector3d place = pose * centre / (kLength * diameter_m);
-    const Eigen::Matrix3d axes = pose.rotation_matrix();
-    std::array<int, 6> cell{};
-    for (int i = 0; i < 3; ++i) {
-        cell[i] = static_cast<int>(std::floor(place[i]));
-        cell[3 + i] = static_cast<int>(std::floor((i < 2 ? axes(i, 0) : axes(0, 1)) / kTurn));
-    }
-    return cell;
-}
-
-// About `count` of the measured oriented points, as often as they tell something: a plane that fills the view gives
-// few. The first ones are spread over the image as all are.
-std::vector<SurfaceAnchor> telling_points(const PatchGrid& grid, std::size_t count) {
-    constexpr std::size_t kStep = 149;  // prime to most numbers of points
-    const auto tells = [](const Patch& patch) { return patch.rarity > 0.0 ? patch.telling : 0.0; };
-    double sum = 0.0;
-    for (const Patch& patch : grid.patches) sum += tells(patch);
-    const double step = sum / static_cast<double>(count);
-    std::vector<SurfaceAnchor> in_rows, points;
-    double reached = 0.0, mark = 0.5 * step;
-    for (const Patch& patch : grid.patches) {
-        reached += tells(patch);
-        for (; mark < reached && in_rows.size() < count; mark += step) in_rows.push_back(patch.surface);
-    }
-    for (std::size_t k = 0; k < in_rows.size(); ++k) points.push_back(in_rows[k * kStep % in_rows.size()]);
-    return points;
-}
-
-// The best first, at most one from each cell of poses, at most `count`.
-std::vector<Guess> best_distinct(const std::vector<Guess>& guesses, int count, const AnchorPairs& pairs) {
-    std::vector<int> order(guesses.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return guesses[a].score > guesses[b].score; });
-    std::map<std::array<int, 6>, int> taken;
-    std::vector<Guess> best;
-    for (const int index : order) {
-        const Guess& guess = guesses[index];
-        if (static_cast<int>(best.size()) >= count || !(guess.score > 0.0)) break;
-        if (taken[cell_of_pose(guess.camera_from_object, pairs.diameter_m(), pairs.surface().centre_in_object())]++ ==
-            0)
-            best.push_back(guess);
-    }
-    return best;
+// About `count` of the anchors, the first ones spread as all are.
+std::vector<SurfaceAnchor> some_of(const std::vector<SurfaceAnchor>& anchors, std::size_t count) {
+    constexpr std::size_t kStep = 1597;  // prime to most numbers of anchors
+    std::vector<SurfaceAnchor> some;
+    for (std::size_t k = 0; k < std::min(count, anchors.size()); ++k)
+        some.push_back(anchors[k * kStep % anchors.size()]);
+    return some;
 }
 
 }  // namespace
@@ -213,29 +165,28 @@ PatchGrid patches_of(const Observation& observation, const AnchorPairs& pairs, s
 
 std::vector<Pose> start_on_pairs(const Observation& observation, const AnchorPairs& pairs, const PatchGrid& patches,
                                  const PairStartOptions& options, std::uint64_t seed, std::uint64_t step) {
-    constexpr std::size_t kScreened = 128, kPoints = 256;
-    constexpr double kFine = 0.5;  // of the tolerance, once pulled
-    const double tolerance_m = start_tolerance_m(observation, pairs);
+    constexpr std::size_t kMeasured = 256, kModel = 256;  // points
     Draw draw{observation, pairs, patches, {}};
     double sum = 0.0;
     for (const Patch& patch : draw.grid.patches) draw.chances.push_back(sum += patch.rarity);
     if (!(sum > 0.0)) return {};
-    const std::vector<SurfaceAnchor> measured = telling_points(patches, kPoints);
+    Screen screen{pairs.surface(),
+                  patches,
+                  observation.camera(),
+                  telling_points(patches, kMeasured),
+                  {},
+                  start_tolerance_m(observation, pairs),
+                  pairs.diameter_m(),
+                  options.num_threads};
+    // What is segmented is the part and nothing else: the share tells all.
+    if (!observation.segmented()) screen.model = some_of(pairs.anchors(), kModel);
     std::vector<Guess> guesses(static_cast<std::size_t>(options.draws));
     parallel_for(options.draws, options.num_threads, [&](int i) {
         RandomStream random(seed, step, options.first_stream + static_cast<std::uint64_t>(i), RandomPurpose::kStart);
         const std::optional<Pose> pose = i % 4 != 0 ? pose_from_pair(draw, random) : pose_from_point(draw, random);
-        if (pose) guesses[i] = {*pose, share_on_surface(pairs.surface(), *pose, measured, kScreened, tolerance_m)};
+        if (pose) guesses[i] = glanced_at(screen, *pose);
     });
-    std::vector<Guess> best = best_distinct(guesses, kPulled * options.count, pairs);
-    parallel_for(static_cast<int>(best.size()), options.num_threads, [&](int i) {
-        Pose& pose = best[i].camera_from_object;
-        pose = pulled_onto_surface(pairs.surface(), pose, measured, tolerance_m);
-        best[i].score = share_on_surface(pairs.surface(), pose, measured, kPoints, kFine * tolerance_m);
-    });
-    std::vector<Pose> poses;
-    for (const Guess& guess : best_distinct(best, options.count, pairs)) poses.push_back(guess.camera_from_object);
-    return poses;
+    return screened(std::move(guesses), screen, options.count);
 }
 
 }  // namespace nearpose

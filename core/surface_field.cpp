@@ -103,22 +103,24 @@ double share_on_surface(const SurfaceField& field, const Pose& camera_from_objec
 }
 
 Pose pulled_onto_surface(const SurfaceField& field, const Pose& camera_from_object,
-                         const std::vector<SurfaceAnchor>& measured, double tolerance_m) {
-    constexpr int kRounds = 4;
+                         const std::vector<SurfaceAnchor>& measured, std::size_t count, int rounds,
+                         double tolerance_m) {
     constexpr float kAlike = 0.5F;                 // cosine: while the pose is still off
     constexpr double kDamping = 1.0;               // points
     const double scale_m = 4.0 * field.reach_m();  // lengths in it weigh as turns
     Pose pose = camera_from_object;
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < rounds; ++round) {
         const Pose object_from_camera = pose.inverse();
         const Eigen::Matrix3f rotation = object_from_camera.rotation_matrix().cast<float>();
         const Eigen::Vector3f translation = object_from_camera.translation.cast<float>();
-        const double gate_m = 0.5 * tolerance_m * (kRounds - round + 1);  // narrower from round to round
+        const double gate_m = 0.5 * tolerance_m * (rounds - round + 1);  // narrower from round to round
         const Eigen::Vector3f centre = field.centre_in_object().cast<float>();
         const auto gate = static_cast<float>(gate_m);
         Eigen::Matrix<float, 6, 6> A = static_cast<float>(kDamping) * Eigen::Matrix<float, 6, 6>::Identity();
         Eigen::Matrix<float, 6, 1> b = Eigen::Matrix<float, 6, 1>::Zero();
-        for (const SurfaceAnchor& anchor : measured) {
+        const std::size_t end = std::min(count, measured.size());
+        for (std::size_t k = 0; k < end; ++k) {
+            const SurfaceAnchor& anchor = measured[k];
             const Eigen::Vector3f point = rotation * anchor.point_in_object + translation;
             const SurfaceAnchor* surface = field.nearest(point);
             if (surface == nullptr) continue;
@@ -127,7 +129,11 @@ Pose pulled_onto_surface(const SurfaceField& field, const Pose& camera_from_obje
             if (std::abs(off) > gate || normal.dot(rotation * anchor.normal_in_object) < kAlike) continue;
             // Moving the object by a twist moves the measured point the other way in the object's frame.
             Eigen::Matrix<float, 6, 1> row;
-            row << (point - centre).cross(normal) / static_cast<float>(scale_m), normal;
+            const Eigen::Vector3f arm = point - centre;
+            const float scale = static_cast<float>(scale_m);
+            row << (arm.y() * normal.z() - arm.z() * normal.y()) / scale,
+                (arm.z() * normal.x() - arm.x() * normal.z()) / scale,
+                (arm.x() * normal.y() - arm.y() * normal.x()) / scale, normal;
             A.selfadjointView<Eigen::Lower>().rankUpdate(row);
             b += off / static_cast<float>(scale_m) * row;
         }
