@@ -201,8 +201,9 @@ Problem problem_of(const NormalEquations& equations, const SensorField& field, c
     problem.information.diagonal().head<3>().array() += 1.0;
     problem.information.diagonal().segment<3>(3).array() += 1.0 / (diameter_m * diameter_m);
     const auto unknowns = static_cast<Eigen::Index>(problem.active.size()) - 6;
-    // An image that is noisier than the sensor's model is no better in what its pixels share.
-    const double worse = std::max(1.0, context.observation.noise_factor());
+    // An image that is far noisier than the sensor's model is no better in what its pixels share.
+    constexpr double kUsual = 1.5;  // up to which the model may be off in its noise alone
+    const double worse = std::max(1.0, context.observation.noise_factor() / kUsual);
     const Eigen::VectorXd all = worse * worse * prior_variances(field, sensor);
     const Eigen::VectorXd all_fitted = prior_variances(field, fitted);
     problem.variances.resize(unknowns);
