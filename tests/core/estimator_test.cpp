@@ -278,8 +278,11 @@ TEST(Estimator, TellsANearlySymmetricPartApartOnlyWhereItsDetailIsInView) {
     EstimatorOptions options = small_options(method_default(), 0);
     options.symmetries.near = {{Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ())), {0, 0, 0}}};
     for (const bool from_above : {true, false}) {
-        const Pose truth{Eigen::Quaterniond(Eigen::AngleAxisd(from_above ? M_PI - 0.4 : 0.4, Eigen::Vector3d::UnitX())),
-                         {0.0, 0.0, 0.45}};
+        // Seen askew, so that faces across all axes are in view.
+        const Eigen::Vector3d tilt = 0.4 * Eigen::Vector3d(1.0, 0.7, 0.0).normalized();
+        const Eigen::Quaterniond tilted(Eigen::AngleAxisd(tilt.norm(), tilt.normalized()));
+        const Eigen::Quaterniond over(Eigen::AngleAxisd(from_above ? M_PI : 0.0, Eigen::Vector3d::UnitX()));
+        const Pose truth{tilted * over, {0.0, 0.0, 0.45}};
         Mask mask;
         const DepthImage image = test::render(*plate, truth, kCamera, 0.9F, &mask);
         PoseEstimator estimator(plate, kSolver, options);
