@@ -63,7 +63,7 @@ Pose Pipeline::update(const DepthImage& depth, const Mask& mask, const Pose& now
     ++step_;
     const CloudIndex cloud(thinned(back_project(depth, mask, camera_), kMaxCloudPoints));
     if (effective_sample_size(particles_.weights) < 0.5 * particles_.size())
-        particles_ = systematic_resample(particles_, kSeed, step_);
+        particles_ = systematic_resample(particles_, particles_.size(), kSeed, step_);
     propagate(particles_, now_from_before);
     diffuse(particles_, {kDiffusion_rad, kDiffusionDiameters * extent_.diameter_m()}, extent_.centre_in_object(), kSeed,
             step_);
