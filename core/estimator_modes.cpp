@@ -91,7 +91,7 @@ std::vector<Mode> PoseEstimator::refine_all(const std::vector<Mode>& modes, cons
     std::vector<MovedParticle> moved(modes.size());
     parallel_for(count, options_.num_threads,
                  [&](int k) { moved[k] = refine_mode(modes[k].camera_from_object, context, refinement); });
-    result.effort.modes = count;
+    result.effort.modes += count;
     budget_.took(Stage::kModes, count, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
     std::vector<Mode> refined;
     for (const MovedParticle& mode : moved) {

@@ -253,12 +253,14 @@ FineFit fit_finely(const Pose& start, const StepContext& context) {
         const Eigen::LLT<Eigen::MatrixXd> factor = factor_of(problem);
         const Eigen::VectorXd step = factor.solve(problem.gradient);
         const Pose moved = perturb_about(at.camera_from_object, step.head<6>(), extent.centre_in_object());
-        if (!is_valid(moved)) break;
-        at.camera_from_object = moved;
-        for (std::size_t i = 6; i < problem.active.size(); ++i)
-            at.errors[problem.active[i] - 6] = step[static_cast<Eigen::Index>(i)];
         const double shift_m = step.segment<3>(3).norm() + 0.5 * extent.diameter_m() * step.head<3>().norm();
-        const bool last = round + 1 == kMaxRounds || (round > 0 && shift_m < nothing_m);
+        const bool usable = is_valid(moved);
+        const bool last = !usable || round + 1 == kMaxRounds || (round > 0 && shift_m < nothing_m);
+        if (usable) {
+            at.camera_from_object = moved;
+            for (std::size_t i = 6; i < problem.active.size(); ++i)
+                at.errors[problem.active[i] - 6] = step[static_cast<Eigen::Index>(i)];
+        }
         if (last) fit.covariance = covariance_of(problem, factor);
         fit.pairs = equations.pairs;
         if (last) break;
