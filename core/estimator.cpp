@@ -1,5 +1,6 @@
 #include "core/estimator.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -220,10 +221,11 @@ bool PoseEstimator::take_map(const Observation& observation, UpdateResult& resul
 // The chosen mode's fine fit and the track that the arm's motion carried, brought together.
 void PoseEstimator::correct_tracked(const Mode& chosen, bool replaced, const Observation& observation) {
     const int rays = economical_ ? options_.method.economy.fit_rays : options_.method.refinement.max_rays;
-    const FineFit fit = fit_finely(chosen.camera_from_object, fine_context(rays, observation));
-    observed_ = fit.covariance;
+    const PixelGrid grid = grid_to_fit(chosen.camera_from_object, observation, rays);
+    const FineFit fit = fit_finely(chosen.camera_from_object, fine_context(grid, observation));
+    observed_ = fit.covariance + fit.constant_covariance;
     if (!track_ || replaced)
-        track_ = Track{fit.camera_from_object, fit.covariance, {}};
+        track_ = Track{fit.camera_from_object, fit.covariance, {}, fit.constant_covariance};
     else
         track_ = correct_track(*track_, fit, views_->extent().centre_in_object());
     tracked_->camera_from_object = track_->camera_from_object;
@@ -242,8 +244,7 @@ ObservedGrid PoseEstimator::observe_on(const PixelGrid& grid, const Observation&
 }
 
 // On a grid that was measured once.
-StepContext PoseEstimator::fine_context(int max_rays, const Observation& observation) {
-    const PixelGrid grid = grid_for(observation, max_rays);
+StepContext PoseEstimator::fine_context(const PixelGrid& grid, const Observation& observation) {
     auto kept = std::find_if(fine_.begin(), fine_.end(), [&](const ObservedGrid& other) { return other.grid == grid; });
     if (kept == fine_.end()) kept = fine_.insert(fine_.end(), observe_on(grid, observation));
     return context_for(observation, *kept, options_.method.step);
@@ -301,7 +302,38 @@ PixelGrid grid_in(PixelBox box, double margin, const PinholeCamera& camera, int 
 
 constexpr double kMargin = 0.2;  // of the box: model beyond the seen object must be able to show
 
+// The part of the image in which the model's box lies; none where a corner comes close to the camera's plane.
+std::optional<PixelBox> box_of_model(const Pose& camera_from_object, const ModelExtent& extent,
+                                     const PinholeCamera& camera) {
+    Eigen::AlignedBox2d pixels;
+    for (int corner = 0; corner < 8; ++corner) {
+        const Eigen::Vector3d upper((corner & 1) != 0, (corner & 2) != 0, (corner & 4) != 0);
+        const Eigen::Vector3d point =
+            camera_from_object *
+            Eigen::Vector3d(extent.box_min_in_object +
+                            upper.cwiseProduct(extent.box_max_in_object - extent.box_min_in_object));
+        if (!(point.z() > 0.1 * extent.diameter_m())) return std::nullopt;
+        pixels.extend(camera.project(point));
+    }
+    const Eigen::Vector2d size(camera.width, camera.height);
+    const Eigen::Vector2d first = pixels.min().array().floor().max(0.0).min(size.array());
+    const Eigen::Vector2d last = (pixels.max().array().floor() + 1.0).max(0.0).min(size.array());
+    return PixelBox{static_cast<int>(first.x()), static_cast<int>(first.y()), static_cast<int>(last.x()),
+                    static_cast<int>(last.y())};
+}
+
 }  // namespace
+
+// The fine fit has use for rays only where the model meets what was measured.
+PixelGrid PoseEstimator::grid_to_fit(const Pose& camera_from_object, const Observation& observation,
+                                     int max_rays) const {
+    PixelBox box = observation.candidate_box();
+    if (const auto model = box_of_model(camera_from_object, views_->extent(), observation.camera())) {
+        box = {std::max(box.first_u, model->first_u), std::max(box.first_v, model->first_v),
+               std::min(box.last_u, model->last_u), std::min(box.last_v, model->last_v)};
+    }
+    return grid_in(box, 0.0, observation.camera(), max_rays);
+}
 
 PixelGrid PoseEstimator::grid_around(const Pose& camera_from_object, const Observation& observation,
                                      int max_rays) const {
@@ -323,11 +355,11 @@ void PoseEstimator::describe_estimate(const Observation& observation, UpdateResu
     result.camera_from_object = tracked_->camera_from_object;
     result.cost = tracked_->cost;
     const ModelExtent& extent = views_->extent();
-    const StepContext context = fine_context(refinement_now().max_rays, observation);
+    const StepContext context = fine_context(grid_for(observation, refinement_now().max_rays), observation);
     const Eigen::Vector3d centre = extent.centre_in_object();
     const bool estimated = result.status == UpdateStatus::kEstimated;
     if (!track_) observed_ = covariance_at(tracked_->camera_from_object, context);
-    result.covariance = about_origin(track_ ? track_->covariance : observed_, centre);
+    result.covariance = about_origin(track_ ? track_->whole_covariance() : observed_, centre);
     constexpr double kOneMetre = 1.0;
     result.observability = observability_of(estimated ? observed_ : Matrix6d(kOneMetre * Matrix6d::Identity()),
                                             0.5 * extent.diameter_m(), options_.tolerance.translation_m);

@@ -130,10 +130,11 @@ class PoseEstimator {
     std::vector<Mode> refine_all(const std::vector<Mode>& modes, const Observation& observation, UpdateResult& result);
     StepContext context_for(const Observation& observation, const ObservedGrid& observed,
                             const GradientStep& step) const;
-    StepContext fine_context(int max_rays, const Observation& observation);
+    StepContext fine_context(const PixelGrid& grid, const Observation& observation);
     ObservedGrid observe_on(const PixelGrid& grid, const Observation& observation) const;
     PixelGrid grid_for(const Observation& observation, int max_rays) const;
     PixelGrid grid_around(const Pose& camera_from_object, const Observation& observation, int max_rays) const;
+    PixelGrid grid_to_fit(const Pose& camera_from_object, const Observation& observation, int max_rays) const;
     PixelBox box_around(const Pose& camera_from_object, const Observation& observation) const;
     void weigh_against_image(int stride, const Observation& observation, MovedParticle& moved) const;
     ModeDistance mode_distance() const;

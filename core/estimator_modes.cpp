@@ -85,7 +85,7 @@ Mode PoseEstimator::look_closer(const Mode& chosen, const Observation& observati
 std::vector<Mode> PoseEstimator::refine_all(const std::vector<Mode>& modes, const Observation& observation,
                                             UpdateResult& result) {
     const Refinement refinement = refinement_now();
-    const StepContext context = fine_context(refinement.max_rays, observation);
+    const StepContext context = fine_context(grid_for(observation, refinement.max_rays), observation);
     const auto begin = std::chrono::steady_clock::now();
     const int count = static_cast<int>(modes.size());
     std::vector<MovedParticle> moved(modes.size());

@@ -54,7 +54,7 @@ struct Economy {
     int step_rays = 128;  // of a particle's view, and of a rival's
     int rays = 800;       // of a refined view
     int rounds = 2;       // of refinement
-    int fit_rays = 4000;  // of the fine fit's view
+    int fit_rays = 3000;  // of the fine fit's view
     int rivals = 32;
 };
 

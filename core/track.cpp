@@ -73,7 +73,8 @@ Track correct_track(const Track& predicted, const FineFit& observed, const Eigen
         twist_about(observed.camera_from_object, predicted.camera_from_object, centre_in_object);
     const Matrix6d sum = predicted.covariance + observed.covariance;
     const bool rejected = to_prediction.dot(sum.llt().solve(to_prediction)) > kRejectedBeyond;
-    Track track{observed.camera_from_object, observed.covariance, predicted.object_motion};
+    Track track{observed.camera_from_object, observed.covariance, predicted.object_motion,
+                observed.constant_covariance};
     if (!rejected) {
         // v^T P v = d and v^T R v = 1 for the columns v of V: in V's dual basis both are diagonal.
         const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6d> solver(predicted.covariance, observed.covariance);

@@ -29,6 +29,9 @@ struct Track {
     Pose camera_from_object;
     Matrix6d covariance = Matrix6d::Zero();  // of the twist about the model's centre, in object axes, rotation first
     ObjectMotion object_motion;
+    Matrix6d constant_covariance = Matrix6d::Zero();  // to be added: of what frames do not average out
+
+    Matrix6d whole_covariance() const { return covariance + constant_covariance; }
 };
 
 // The control: the pose moves with the camera, and the arm's and the object's motion widen its spread.

@@ -125,5 +125,68 @@ TEST(FineFit, ASensorWithSharedErrorsIsTrustedLess) {
     for (int i = 0; i < 6; ++i) EXPECT_GT(shared(i, i), 2.0 * alone(i, i)) << i;
 }
 
+// The part as a workshop made it: larger than its CAD by a share of itself.
+test::BoxViewGenerator enlarged_part(double share) {
+    std::vector<test::Box> boxes = test::asymmetric_part();
+    const Eigen::Vector3d centre = kPart.extent().centre_in_object();
+    for (test::Box& box : boxes) {
+        box.min += share * (box.min - centre);
+        box.max += share * (box.max - centre);
+    }
+    return test::BoxViewGenerator(boxes);
+}
+
+Observation observe_exactly(const test::BoxViewGenerator& part, const SensorModel& sensor) {
+    Mask mask;
+    const DepthImage image = test::render(part, kTruth, kCamera, 0.9F, &mask);
+    ObservationOptions options;
+    options.sensor = sensor;
+    return make_observation(image, kCamera, mask, options);
+}
+
+TEST(FineFit, APartLargerThanItsCadIsOffByAStepOfTheConstantCovariance) {
+    constexpr double kShare = 0.001;
+    SensorModel sensor = sensor_of_test();
+    sensor.systematic_sigma_m = 0.0;  // nothing but the pose may give way
+    sensor.depth_scale_sigma = 0.0;
+    const FineFit exact = fit(observe_exactly(kPart, sensor), kTruth);
+    const FineFit larger = fit(observe_exactly(enlarged_part(kShare), sensor), kTruth);
+    const Twist step = error_of(larger.camera_from_object) - error_of(exact.camera_from_object);
+    // The covariance is the square of such a step for one sigma, 0.1 %.
+    const Matrix6d squared = step * step.transpose();
+    EXPECT_GT(step.tail<3>().norm(), 2e-5);
+    const Eigen::Matrix3d of_translation = squared.bottomRightCorner<3, 3>();
+    const Eigen::Matrix3d told = larger.constant_covariance.bottomRightCorner<3, 3>();
+    EXPECT_LT((told - of_translation).norm(), 0.4 * of_translation.norm());
+}
+
+TEST(FineFit, AFieldLargerThanTheSensorsIsReckonedWith) {
+    const SensorModel sensor = sensor_of_test();
+    const SensorField field = field_over(kCamera, sensor);
+    const Eigen::VectorXd variances = prior_variances(field, sensor);
+    constexpr int kTrials = 40;
+    constexpr double kLarger = 4.0;
+    double mean_squared_distance = 0.0;
+    for (int trial = 0; trial < kTrials; ++trial) {
+        RandomStream random(9, trial, 0, RandomPurpose::kStart);
+        Eigen::VectorXd errors = Eigen::VectorXd::Zero(field.num_unknowns());
+        for (int i = 0; i < field.num_nodes(); ++i) errors[i] = kLarger * std::sqrt(variances[i]) * random.gaussian();
+        const FineFit fitted = fit(observe_with_errors(sensor, errors, 300 + trial), near_truth());
+        const Twist error = error_of(fitted.camera_from_object);
+        mean_squared_distance += error.dot(fitted.covariance.ldlt().solve(error)) / kTrials;
+    }
+    EXPECT_LT(mean_squared_distance, 15.0) << "a covariance of the sensor's model alone gives up to 6 * 4^2";
+}
+
+TEST(FineFit, APartThatIsNotItsCadIsTrustedLess) {
+    const SensorModel sensor = sensor_of_test();
+    std::vector<test::Box> boxes = test::asymmetric_part();
+    boxes[1].max += Eigen::Vector3d(0.002, 0.0, 0.003);  // a tower of another casting
+    boxes[2].max += Eigen::Vector3d(0.0, 0.002, -0.002);
+    const FineFit right = fit(observe_exactly(kPart, sensor), kTruth);
+    const FineFit wrong = fit(observe_exactly(test::BoxViewGenerator(boxes), sensor), kTruth);
+    for (int i = 0; i < 6; ++i) EXPECT_GT(wrong.covariance(i, i), right.covariance(i, i)) << i;
+}
+
 }  // namespace
 }  // namespace nearpose

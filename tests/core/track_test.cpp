@@ -88,6 +88,16 @@ TEST(Track, StandingStillTheSpreadDoesNotShrinkForEver) {
     EXPECT_GT(std::sqrt(track.covariance(3, 3)), 0.6 * 0.0003) << "the sensor errs alike in every frame";
 }
 
+TEST(Track, WhatIsWrongInEveryFrameAlikeIsNotAveragedOut) {
+    Track track{kPose, diagonal(0.002, 0.0003), {}};
+    const FineFit observed{kPose, diagonal(0.002, 0.0003), 1000, diagonal(0.0, 0.0007)};
+    for (int frame = 0; frame < 50; ++frame) {
+        move_track(track, Pose::identity(), {}, kCentre);
+        track = correct_track(track, observed, kCentre);
+    }
+    EXPECT_NEAR(track.whole_covariance()(3, 3), track.covariance(3, 3) + 0.0007 * 0.0007, 1e-12);
+}
+
 TEST(Track, APredictionThatTheObservationContradictsIsLeftOut) {
     const Track predicted{kPose, diagonal(0.001, 0.0003), {}};
     FineFit observed;
