@@ -71,7 +71,7 @@ Method make_method(const EstimatorSetup& setup) {
         throw std::invalid_argument("method '" + setup.method + "': take default or paper");
     }
     Method method = setup.method == "paper" ? method_paper() : method_default();
-    if (!setup.adaptive) method.economy.min_particles = setup.particles;
+    if (!setup.adaptive) method.economy.min_particles = method.economy.min_particles_unmeasured = setup.particles;
     if (setup.rounds && setup.gradient) {
         check_option("rounds (of the gradient step)", *setup.rounds, 1, 100);
         method.step.rounds = *setup.rounds;

@@ -122,25 +122,26 @@ void PoseEstimator::predict(const std::optional<Pose>& now_from_before, UpdateRe
     const Method& method = options_.method;
     if (particles_.size() == 0) return;
     std::optional<Pose> motion;
-    const int wanted = affordable(Stage::kParticles, particles_wanted(), 1, result);
+    if (now_from_before && is_valid(*now_from_before)) motion = now_from_before;  // otherwise it was not measured
+    const int wanted = affordable(Stage::kParticles, particles_wanted(motion.has_value()), 1, result);
     if (wanted != particles_.size() ||
         effective_sample_size(particles_.weights) < method.resample_below * particles_.size()) {
         particles_ = systematic_resample(particles_, wanted, options_.seed, step_);
         result.resampled = true;
     }
-    if (now_from_before && is_valid(*now_from_before)) {  // a motion that is no motion was not measured
-        propagate(particles_, *now_from_before);
-        if (tracked_) tracked_->camera_from_object = *now_from_before * tracked_->camera_from_object;
-        motion = now_from_before;
+    if (motion) {
+        propagate(particles_, *motion);
+        if (tracked_) tracked_->camera_from_object = *motion * tracked_->camera_from_object;
     }
     if (track_) move_track(*track_, motion, options_.motion_noise, views_->extent().centre_in_object());
     const ModelExtent& extent = views_->extent();
-    diffuse(particles_, {method.diffusion_rotation_rad, method.diffusion_diameters * extent.diameter_m()},
-            extent.centre_in_object(), options_.seed, step_);
+    const double diameters = motion ? method.diffusion_diameters : method.unmeasured_diffusion_diameters;
+    diffuse(particles_, {method.diffusion_rotation_rad, diameters * extent.diameter_m()}, extent.centre_in_object(),
+            options_.seed, step_);
 }
 
 // As many as describe the posterior: its cells are the swarm's modes that are not far less likely than the best.
-int PoseEstimator::particles_wanted() const {
+int PoseEstimator::particles_wanted(bool motion_measured) const {
     const Economy& economy = options_.method.economy;
     if (!economy.on || !one_mode_holds()) return options_.num_particles;
     constexpr double kFarLessLikely_nats = 7.0;
@@ -152,7 +153,8 @@ int PoseEstimator::particles_wanted() const {
     const std::vector<Mode> cells =
         distinct_modes(likely, particles_.size(), views_->extent().centre_in_object(), mode_distance());
     const int size = kld_sample_size(static_cast<int>(cells.size()), economy.kld_error);
-    return std::clamp(size, std::min(economy.min_particles, options_.num_particles), options_.num_particles);
+    const int least = motion_measured ? economy.min_particles : economy.min_particles_unmeasured;
+    return std::clamp(size, std::min(least, options_.num_particles), options_.num_particles);
 }
 
 void PoseEstimator::move_particles(const Observation& observation, UpdateResult& result) {

@@ -118,7 +118,7 @@ class PoseEstimator {
     void bring_to_one_representative(std::vector<Mode>& modes) const;
     bool one_mode_holds() const;
     bool rivals_due() const;
-    int particles_wanted() const;
+    int particles_wanted(bool motion_measured) const;
     GradientStep step_now() const;
     Refinement refinement_now() const;
     void weigh_rivals(const UpdateResult& result, bool tried);

@@ -31,6 +31,7 @@ Method method_default() {
     method.refinement.modes = 5;
     method.refinement.rivals = 96;
     method.economy.on = true;
+    method.unmeasured_diffusion_diameters = 0.03;
     return method;
 }
 
@@ -65,6 +66,7 @@ void validate(const Refinement& refinement) {
 
 void validate(const Economy& economy) {
     check_option("economy.min_particles", economy.min_particles, 1, 1e6);
+    check_option("economy.min_particles_unmeasured", economy.min_particles_unmeasured, 1, 1e6);
     check_option("economy.kld_error", economy.kld_error, 1e-6, 10.0);
     check_option("economy.step_rays", economy.step_rays, 1, 1e7);
     check_option("economy.rays", economy.rays, 1, 1e7);
@@ -89,6 +91,7 @@ void validate(const Method& method) {
     check_option("pixel_cost.independent_rays", method.pixel_cost.independent_rays, 0.0, 1e6);
     check_option("diffusion_rotation_rad", method.diffusion_rotation_rad, 0.0, 3.15);
     check_option("diffusion_diameters", method.diffusion_diameters, 0.0, 10.0);
+    check_option("unmeasured_diffusion_diameters", method.unmeasured_diffusion_diameters, 0.0, 10.0);
     check_option("resample_below", method.resample_below, 0.0, 1.0);
 }
 

@@ -48,7 +48,8 @@ struct Refinement {
 // 2003). At the start, after a loss and while a rival is not ruled out everything is as without.
 struct Economy {
     bool on = false;
-    int min_particles = 8;  // for a swarm of one mode
+    int min_particles = 8;              // for a swarm of one mode
+    int min_particles_unmeasured = 32;  // the same, where the arm's motion was not measured
     double kld_error =
         0.15;             // bound on the Kullback-Leibler distance between swarm and posterior, with 99 % confidence
     int step_rays = 128;  // of a particle's view, and of a rival's
@@ -72,7 +73,8 @@ struct Method {
     Economy economy;
     double diffusion_rotation_rad = 0.03;
     double diffusion_diameters = 0.008;
-    double resample_below = 0.5;  // effective sample size, as a fraction of the particles
+    double unmeasured_diffusion_diameters = 0.008;  // instead, in a frame for which the arm's motion was not measured
+    double resample_below = 0.5;                    // effective sample size, as a fraction of the particles
 };
 
 // The paper to the letter: sphere start, nearest neighbours within 30 mm on a part of 0.43 m, sample consensus, three

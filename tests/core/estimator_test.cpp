@@ -324,6 +324,25 @@ TEST(Estimator, WhileOneModeHoldsFewParticlesDoAndAfterALossAllAreBack) {
     EXPECT_LT(error_m(after, 0), 0.001);
 }
 
+TEST(Estimator, AJoltThatNobodyMeasuredIsFollowedInTheFrameItself) {
+    EstimatorOptions options = small_options(method_default(), 0);
+    options.num_particles = 100;
+    PoseEstimator estimator(kPart, kSolver, options);
+    Pose truth = truth_at(0);
+    double worst_m = 0.0;
+    for (int frame = 0; frame < 20; ++frame) {
+        constexpr int kHeld = 8;  // one mode holds by then, and few particles are left
+        if (frame >= kHeld)
+            truth.translation.x() += (frame % 2 == 0 ? 1.0 : -1.0) * 0.10 * kPart->extent().diameter_m();
+        Mask mask;
+        const DepthImage image = test::render(*kPart, truth, kCamera, 0.9F, &mask);
+        const UpdateResult result = estimator.update(make_observation(image, kCamera, mask), {});
+        const Eigen::Vector3d centre = kPart->extent().centre_in_object();
+        if (frame >= kHeld) worst_m = std::max(worst_m, (result.camera_from_object * centre - truth * centre).norm());
+    }
+    EXPECT_LT(worst_m, 0.003);
+}
+
 TEST(Estimator, AFixedNumberOfParticlesStays) {
     EstimatorOptions options = small_options(method_default(), 0);
     options.method.economy.min_particles = options.num_particles;
