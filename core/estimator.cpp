@@ -69,6 +69,8 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
         const ParticleSet predicted = particles_;
         searching_ = particles_.size() == 0 || search_again();
         economical_ = options_.method.economy.on && one_mode_holds() && !searching_;
+        if (searching_ && tracked_ && !before_loss_) before_loss_ = tracked_->camera_from_object;
+        if (!searching_ && one_mode_holds()) before_loss_.reset();
         if (searching_ && pairs_) patches_ = patches_of(observation, *pairs_, options_.seed, step_);
         if (searching_) start(observation, result);
         move_particles(observation, result);
@@ -103,6 +105,7 @@ void PoseEstimator::reset() {
     particles_ = {};
     last_costs_.clear();
     tracked_.reset();
+    before_loss_.reset();
     track_.reset();
     frames_held_ = frames_lost_ = 0;
     rivals_tried_ = false;
@@ -132,6 +135,7 @@ void PoseEstimator::predict(const std::optional<Pose>& now_from_before, UpdateRe
     if (motion) {
         propagate(particles_, *motion);
         if (tracked_) tracked_->camera_from_object = *motion * tracked_->camera_from_object;
+        if (before_loss_) before_loss_ = *motion * *before_loss_;
     }
     if (track_) move_track(*track_, motion, options_.motion_noise, views_->extent().centre_in_object());
     const ModelExtent& extent = views_->extent();

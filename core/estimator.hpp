@@ -148,6 +148,7 @@ class PoseEstimator {
     std::optional<AnchorPairs> pairs_;
     std::optional<PatchGrid> patches_;  // while searching
     std::vector<Pose> screened_;        // while searching: the best starts on pairs
+    std::optional<Pose> before_loss_;   // from a search on until one mode holds: the lost pose, as the arm carries it
     std::optional<Pose> close_up_;      // while searching: where the modes are told apart
     std::list<ObservedGrid> fine_;      // during an update, the grids of refined views
     TimeBudget budget_;

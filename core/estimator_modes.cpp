@@ -102,8 +102,8 @@ std::vector<Mode> PoseEstimator::refine_all(const std::vector<Mode>& modes, cons
     return refined;
 }
 
-// The tracked mode first (where there is one), then the swarm's, then the best starts of a search, which wrong ones may
-// outdo until they are refined, then the rivals.
+// The tracked mode first (where there is one), then where it was before a loss, the swarm's, then the best starts of a
+// search, which wrong ones may outdo until they are refined, then the rivals.
 std::vector<Mode> PoseEstimator::modes_to_refine(const Observation& observation, UpdateResult& result) {
     const Refinement& refinement = options_.method.refinement;
     const Eigen::Vector3d centre = views_->extent().centre_in_object();
@@ -116,6 +116,7 @@ std::vector<Mode> PoseEstimator::modes_to_refine(const Observation& observation,
         economical_ && !leaders.empty() &&
         same_mode(leaders.front().camera_from_object, tracked_->camera_from_object, centre, mode_distance());
     if (tracked_ && !brought) modes.push_back(*tracked_);
+    if (before_loss_) modes.push_back({*before_loss_, 1.0, 0.0});  // it may only have been hidden for a while
     modes.insert(modes.end(), leaders.begin(), leaders.end());
     for (const Pose& pose : screened_) modes.push_back({pose, 1.0, 0.0});
     // A search tries those of the mode that it has chosen.

@@ -246,6 +246,17 @@ TEST(Estimator, FindsTheObjectAgainWhereItWasPutDown) {
     EXPECT_EQ(result.verdict, Verdict::kAccept);
 }
 
+TEST(Estimator, AfterFramesOfNonsenseItIsBackInTheFirstRightOne) {
+    PoseEstimator estimator(kPart, kSolver, small_options(method_default(), 0));
+    for (int frame = 0; frame < 7; ++frame)
+        estimator.update(observe_at(frame), frame > 0 ? std::optional(motion_to(frame)) : std::nullopt);
+    DepthImage wall{kCamera.width, kCamera.height, std::vector<float>(160 * 120, 0.45F)};
+    for (int frame = 7; frame < 10; ++frame)
+        EXPECT_NE(estimator.update(make_observation(wall, kCamera, {}), motion_to(frame)).verdict, Verdict::kAccept);
+    const UpdateResult back = estimator.update(observe_at(10), motion_to(10));
+    EXPECT_LT(error_m(back, 10), 0.002);
+}
+
 TEST(Estimator, BeforeAFlatFaceTheArmsMotionHoldsWhatIsNotSeen) {
     // A slab's face fills the view: it says nothing of two slides and a turn. The camera goes along it.
     const auto slab =
