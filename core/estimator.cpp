@@ -86,12 +86,19 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
     result.verdict = Verdict::kLost;
     if (tracked_) describe_estimate(observation, result);
     fine_.clear();
-    constexpr double kConvincing = 0.8;
-    frames_lost_ = result.verdict == Verdict::kLost || result.pixels.agreement() < kConvincing ? frames_lost_ + 1 : 0;
+    count_frames(result);
     UpdateSeconds& seconds = result.seconds;
     seconds.total = seconds_since(update_began_);
     budget_.took(Stage::kFit, 1, seconds.total - seconds.start - seconds.particles - seconds.refinement);
     return result;
+}
+
+// For how long the estimate has contradicted what is seen, and for how long it has not been convincing.
+void PoseEstimator::count_frames(const UpdateResult& result) {
+    constexpr double kContradicted = 0.8, kConvincing = 0.93;
+    const double agreement = result.verdict == Verdict::kLost ? 0.0 : result.pixels.agreement();
+    frames_lost_ = agreement < kContradicted ? frames_lost_ + 1 : 0;
+    frames_doubtful_ = agreement < kConvincing ? frames_doubtful_ + 1 : 0;
 }
 
 // What of `wanted` fits into the budget.
@@ -107,7 +114,7 @@ void PoseEstimator::reset() {
     tracked_.reset();
     before_loss_.reset();
     track_.reset();
-    frames_held_ = frames_lost_ = 0;
+    frames_held_ = frames_lost_ = frames_doubtful_ = 0;
     rivals_tried_ = false;
 }
 
@@ -252,7 +259,7 @@ ObservedGrid PoseEstimator::observe_on(const PixelGrid& grid, const Observation&
 // On a grid that was measured once.
 StepContext PoseEstimator::fine_context(const PixelGrid& grid, const Observation& observation) {
     auto kept = std::find_if(fine_.begin(), fine_.end(), [&](const ObservedGrid& other) { return other.grid == grid; });
-    if (kept == fine_.end()) kept = fine_.insert(fine_.end(), observe_on(grid, observation));
+    if (kept == fine_.end()) kept = fine_.insert(fine_.end(), observe(observation, grid));
     return context_for(observation, *kept, options_.method.step);
 }
 

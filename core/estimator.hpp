@@ -113,6 +113,7 @@ class PoseEstimator {
     bool take_refined_mode(const Observation& observation, UpdateResult& result);
     Mode look_closer(const Mode& chosen, const Observation& observation, UpdateResult& result);
     int affordable(Stage stage, int wanted, int least, UpdateResult& result) const;
+    void count_frames(const UpdateResult& result);
     bool search_again() const;
     std::vector<Mode> near_modes(const std::vector<Mode>& modes) const;
     void bring_to_one_representative(std::vector<Mode>& modes) const;
@@ -163,7 +164,8 @@ class PoseEstimator {
     bool searching_ = false;                // in this update the object may be anywhere
     bool economical_ = false;               // in this update one mode holds, and less will do
     bool rivals_tried_ = false;             // since the tracked mode was last replaced
-    int frames_lost_ = 0;                   // updates in a row whose estimate does not convince
+    int frames_lost_ = 0;                   // updates in a row whose estimate contradicts what is seen
+    int frames_doubtful_ = 0;               // or does not convince
     int frames_held_ = 0;                   // updates since the tracked mode was last replaced
 };
 

@@ -59,11 +59,15 @@ ParticleSet PoseEstimator::start_where_surfaces_meet(const Observation& observat
     return particles;
 }
 
-// An object that is not seen, or whose pose the image contradicts, is searched for anew; the prediction
-// stays among the modes that are compared.
+// An object that is not seen, or whose pose the image contradicts, is searched for anew; the prediction stays among the
+// modes that are compared. A pose that only fails to convince is doubted at first and now and then: a model that is not
+// quite the part never convinces.
 bool PoseEstimator::search_again() const {
+    constexpr int kAtFirst = 8, kPeriod = 16;  // frames
     const int period = options_.method.refinement.frames_to_search;
-    return options_.method.refinement.modes > 0 && period > 0 && frames_lost_ > 0 && frames_lost_ % period == 0;
+    if (options_.method.refinement.modes == 0 || period == 0) return false;
+    if (frames_lost_ > 0) return frames_lost_ % period == 0;
+    return frames_doubtful_ > 0 && frames_doubtful_ % (frames_doubtful_ <= kAtFirst ? 2 : kPeriod) == 0;
 }
 
 void PoseEstimator::keep_best_starts(const Observation& observation, UpdateResult& result) {

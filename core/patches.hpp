@@ -15,9 +15,9 @@ struct Patch {
     SurfaceAnchor surface{{0, 0, 0}, {0, 0, 0}};  // in camera coordinates; normal zero where none is known
     bool in_plane = false;                        // one of the largest in view
     // All in 0..1. A plane larger than any face of the model is none of its faces, and agreement there says little.
-    double rarity = 0.0;   // how likely it is drawn for a start; 0 where no normal is known
-    double telling = 1.0;  // how likely it is among the points that starts are screened with, at any distance: a plane
-                           // that fills the view gives few
+    double rarity = 0.0;   // how likely it is drawn for half of the starts; 0 where no normal is known
+    double telling = 1.0;  // how likely it is drawn for the others, and among the points that starts are screened with,
+                           // at any distance: a plane that fills the view gives few
     double weight = 1.0;   // and otherwise
 };
 

@@ -54,6 +54,7 @@ struct Draw {
     const Observation& observation;
     const AnchorPairs& pairs;
     const PatchGrid& grid;
+    double Patch::*chance;        // of a patch: its rarity or how telling it is
     std::vector<double> chances;  // cumulative, of the patches
 
     // Farther second points are out of the image.
@@ -63,7 +64,14 @@ struct Draw {
     }
 };
 
-// A measured point, as likely as it is rare.
+Draw draw_by(double Patch::*chance, const Observation& observation, const AnchorPairs& pairs, const PatchGrid& grid) {
+    Draw draw{observation, pairs, grid, chance, {}};
+    double sum = 0.0;
+    for (const Patch& patch : grid.patches) draw.chances.push_back(sum += patch.rarity > 0.0 ? patch.*chance : 0.0);
+    return draw;
+}
+
+// A measured point, as likely as its chance.
 const SurfaceAnchor& draw_patch(const Draw& draw, RandomStream& random) {
     const double mark = random.uniform() * draw.chances.back();
     const auto at = std::upper_bound(draw.chances.begin(), draw.chances.end(), mark);
@@ -95,7 +103,7 @@ std::optional<Pose> pose_from_pair(const Draw& draw, RandomStream& random) {
         const double angle = random.uniform(0.0, 2.0 * M_PI), luck = random.uniform();
         const int pixel = camera.pixel_at(centre.x() + radius * std::cos(angle), centre.y() + radius * std::sin(angle));
         const Patch* candidate = pixel < 0 ? nullptr : draw.grid.at(camera, pixel);
-        if (candidate == nullptr || candidate->rarity <= luck) continue;
+        if (candidate == nullptr || candidate->rarity <= 0.0 || candidate->*draw.chance <= luck) continue;
         const std::vector<AnchorPairs::Pair>& pairs = draw.pairs.alike(first, candidate->surface);
         if (pairs.empty() || (alike != nullptr && pairs.size() >= alike->size())) continue;
         second = candidate->surface;
@@ -166,10 +174,10 @@ PatchGrid patches_of(const Observation& observation, const AnchorPairs& pairs, s
 std::vector<Pose> start_on_pairs(const Observation& observation, const AnchorPairs& pairs, const PatchGrid& patches,
                                  const PairStartOptions& options, std::uint64_t seed, std::uint64_t step) {
     constexpr std::size_t kMeasured = 256, kModel = 256;  // points
-    Draw draw{observation, pairs, patches, {}};
-    double sum = 0.0;
-    for (const Patch& patch : draw.grid.patches) draw.chances.push_back(sum += patch.rarity);
-    if (!(sum > 0.0)) return {};
+    // A plane that fills the view may be a face of the part or not: half of the draws take it for one.
+    const Draw by_rarity = draw_by(&Patch::rarity, observation, pairs, patches);
+    const Draw by_telling = draw_by(&Patch::telling, observation, pairs, patches);
+    if (by_rarity.chances.empty() || !(by_rarity.chances.back() > 0.0)) return {};
     Screen screen{pairs.surface(),
                   patches,
                   observation.camera(),
@@ -183,6 +191,7 @@ std::vector<Pose> start_on_pairs(const Observation& observation, const AnchorPai
     std::vector<Guess> guesses(static_cast<std::size_t>(options.draws));
     parallel_for(options.draws, options.num_threads, [&](int i) {
         RandomStream random(seed, step, options.first_stream + static_cast<std::uint64_t>(i), RandomPurpose::kStart);
+        const Draw& draw = i % 2 == 0 ? by_rarity : by_telling;
         const std::optional<Pose> pose = i % 4 != 0 ? pose_from_pair(draw, random) : pose_from_point(draw, random);
         if (pose) guesses[i] = glanced_at(screen, *pose);
     });

@@ -10,7 +10,8 @@
 namespace nearpose {
 namespace {
 
-constexpr std::size_t kGlance = 32, kGlanceModel = 64;  // points
+constexpr std::size_t kFirst = 8, kFirstModel = 16;  // points
+constexpr std::size_t kGlance = 32, kGlanceModel = 64;
 
 // Poses of one cell are of one basin; the cells are coarse.
 std::array<int, 6> cell_of_pose(const Pose& pose, double diameter_m, const Eigen::Vector3d& centre) {
@@ -125,7 +126,11 @@ double gain_on_patches(const Screen& screen, const Pose& camera_from_object, std
     return gain;
 }
 
+// Most guesses are wrong everywhere, which a few points tell.
 Guess glanced_at(const Screen& screen, const Pose& pose) {
+    if (share_on_surface(screen.surface, pose, screen.measured, kFirst, screen.tolerance_m) == 0.0 &&
+        gain_on_patches(screen, pose, kFirstModel) <= 0.0)
+        return {};
     return {pose, share_on_surface(screen.surface, pose, screen.measured, kGlance, screen.tolerance_m),
             gain_on_patches(screen, pose, kGlanceModel)};
 }

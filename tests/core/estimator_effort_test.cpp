@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "tests/core/estimator_scene.hpp"
 
@@ -107,6 +108,27 @@ TEST(Estimator, WhileOneModeHoldsFewParticlesDoAndAfterALossAllAreBack) {
     EXPECT_EQ(after.effort.particles, 40);
     EXPECT_GT(after.effort.starts, 0);
     EXPECT_LT(error_m(after, 0), 0.001);
+}
+
+TEST(Estimator, WhatDoesNotConvinceIsDoubtedAtFirstAndNowAndThen) {
+    // Every eighth pixel of the part lies behind it, as where a model is not quite the part.
+    Mask mask;
+    DepthImage image = render(*kPart, truth_at(0), kCamera, 0.9F, &mask);
+    int on_part = 0;
+    for (std::size_t pixel = 0; pixel < mask.value.size(); ++pixel)
+        if (mask.value[pixel] != 0 && on_part++ % 8 == 0) image.depth_m[pixel] += 0.05F;
+    const Observation observation = make_observation(image, kCamera, mask);
+    PoseEstimator estimator(kPart, kSolver, small_options(method_default(), 0));
+    std::vector<int> searched;
+    for (int frame = 0; frame < 34; ++frame) {
+        const UpdateResult result = estimator.update(observation, Pose::identity());
+        EXPECT_GT(result.pixels.agreement(), 0.8);
+        EXPECT_LT(result.pixels.agreement(), 0.93);
+        EXPECT_EQ(result.verdict, Verdict::kContinue);
+        EXPECT_LT(error_m(result, 0), 0.002) << frame;
+        if (result.effort.starts > 0) searched.push_back(frame);
+    }
+    EXPECT_EQ(searched, (std::vector<int>{0, 2, 4, 6, 8, 16, 32}));
 }
 
 TEST(Estimator, AJoltThatNobodyMeasuredIsFollowedInTheFrameItself) {
