@@ -86,19 +86,23 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
     result.verdict = Verdict::kLost;
     if (tracked_) describe_estimate(observation, result);
     fine_.clear();
-    count_frames(result);
+    remember(result);
     UpdateSeconds& seconds = result.seconds;
     seconds.total = seconds_since(update_began_);
     budget_.took(Stage::kFit, 1, seconds.total - seconds.start - seconds.particles - seconds.refinement);
     return result;
 }
 
-// For how long the estimate has contradicted what is seen, and for how long it has not been convincing.
-void PoseEstimator::count_frames(const UpdateResult& result) {
+// For how long the estimate has contradicted what is seen, for how long it has not been convincing, and how much it
+// took to be accepted.
+void PoseEstimator::remember(const UpdateResult& result) {
     constexpr double kContradicted = 0.8, kConvincing = 0.93;
     const double agreement = result.verdict == Verdict::kLost ? 0.0 : result.pixels.agreement();
     frames_lost_ = agreement < kContradicted ? frames_lost_ + 1 : 0;
     frames_doubtful_ = agreement < kConvincing ? frames_doubtful_ + 1 : 0;
+    constexpr double kKept = 0.7;  // a frame: what was accepted once may have been moved since
+    const double spoken_nats = result.verdict == Verdict::kAccept ? evidence_of(result.pixels) : 0.0;
+    confidence_nats_ = std::max(kKept * confidence_nats_, spoken_nats);
 }
 
 // What of `wanted` fits into the budget.
@@ -115,6 +119,7 @@ void PoseEstimator::reset() {
     before_loss_.reset();
     track_.reset();
     frames_held_ = frames_lost_ = frames_doubtful_ = 0;
+    confidence_nats_ = 0.0;
     rivals_tried_ = false;
 }
 
@@ -143,6 +148,8 @@ void PoseEstimator::predict(const std::optional<Pose>& now_from_before, UpdateRe
         propagate(particles_, *motion);
         if (tracked_) tracked_->camera_from_object = *motion * tracked_->camera_from_object;
         if (before_loss_) before_loss_ = *motion * *before_loss_;
+    } else {
+        confidence_nats_ = 0.0;
     }
     if (track_) move_track(*track_, motion, options_.motion_noise, views_->extent().centre_in_object());
     const ModelExtent& extent = views_->extent();
@@ -229,19 +236,6 @@ bool PoseEstimator::take_map(const Observation& observation, UpdateResult& resul
     result.score = options_.method.cost == Cost::kPixels ? 1.0 - tracked_->cost
                                                          : 1.0 / (1.0 + tracked_->cost / (sigma_m * sigma_m));
     return true;
-}
-
-// The chosen mode's fine fit and the track that the arm's motion carried, brought together.
-void PoseEstimator::correct_tracked(const Mode& chosen, bool replaced, const Observation& observation) {
-    const int rays = economical_ ? options_.method.economy.fit_rays : options_.method.refinement.max_rays;
-    const PixelGrid grid = grid_to_fit(chosen.camera_from_object, observation, rays);
-    const FineFit fit = fit_finely(chosen.camera_from_object, fine_context(grid, observation));
-    observed_ = fit.covariance + fit.constant_covariance;
-    if (!track_ || replaced)
-        track_ = Track{fit.camera_from_object, fit.covariance, {}, fit.constant_covariance};
-    else
-        track_ = correct_track(*track_, fit, views_->extent().centre_in_object());
-    tracked_->camera_from_object = track_->camera_from_object;
 }
 
 // While the object may be anywhere, planes that are too large to be its faces say little for a pose.

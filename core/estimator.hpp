@@ -113,7 +113,9 @@ class PoseEstimator {
     bool take_refined_mode(const Observation& observation, UpdateResult& result);
     Mode look_closer(const Mode& chosen, const Observation& observation, UpdateResult& result);
     int affordable(Stage stage, int wanted, int least, UpdateResult& result) const;
-    void count_frames(const UpdateResult& result);
+    void remember(const UpdateResult& result);
+    double evidence_of(const PixelCost& pixels) const;
+    bool image_prefers(const Pose& fitted, const Pose& predicted, const StepContext& context) const;
     bool search_again() const;
     std::vector<Mode> near_modes(const std::vector<Mode>& modes) const;
     void bring_to_one_representative(std::vector<Mode>& modes) const;
@@ -166,7 +168,9 @@ class PoseEstimator {
     bool rivals_tried_ = false;             // since the tracked mode was last replaced
     int frames_lost_ = 0;                   // updates in a row whose estimate contradicts what is seen
     int frames_doubtful_ = 0;               // or does not convince
-    int frames_held_ = 0;                   // updates since the tracked mode was last replaced
+    double confidence_nats_ = 0.0;  // by how much the image spoke for what was accepted last, fading; 0 where the
+                                    // arm's motion is not known
+    int frames_held_ = 0;           // updates since the tracked mode was last replaced
 };
 
 }  // namespace nearpose

@@ -30,7 +30,8 @@ bool PoseEstimator::take_refined_mode(const Observation& observation, UpdateResu
     result.modes = distinct_modes(refined, static_cast<int>(refined.size()), centre, mode_distance());
     const Mode& tracked = refined.front();
     const Mode* most = &*std::max_element(result.modes.begin(), result.modes.end(), less_evident);
-    const bool replaced = !tracked_ || most->log_evidence > tracked.log_evidence + refinement.challenge_nats;
+    const bool replaced =
+        !tracked_ || most->log_evidence > tracked.log_evidence + std::max(refinement.challenge_nats, confidence_nats_);
     Mode chosen = replaced ? *most : tracked;
     if (searching_ && !observation.segmented()) chosen = look_closer(chosen, observation, result);
     set_weights(result.modes);
@@ -102,6 +103,38 @@ std::vector<Mode> PoseEstimator::refine_all(const std::vector<Mode>& modes, cons
     return refined;
 }
 
+// How much more the pixels speak for a pose than for no object at all [nats].
+double PoseEstimator::evidence_of(const PixelCost& pixels) const {
+    const PixelCostOptions& options = options_.method.pixel_cost;
+    const double rays_per_evidence = options_.method.refinement.rays_per_evidence;
+    PixelCost nothing = pixels;
+    nothing.cost = 1.0;
+    return log_evidence(pixels, options, rays_per_evidence) - log_evidence(nothing, options, rays_per_evidence);
+}
+
+// Whether it speaks more for where the fit is than for where the arm's motion puts what was accepted before.
+bool PoseEstimator::image_prefers(const Pose& fitted, const Pose& predicted, const StepContext& context) const {
+    const double of_fit = evidence_of(refined_cost(fitted, context, refinement_now()));
+    const double of_prediction = evidence_of(refined_cost(predicted, context, refinement_now()));
+    return of_fit > of_prediction + confidence_nats_;
+}
+
+// The chosen mode's fine fit and the track that the arm's motion carried, brought together. Where they contradict each
+// other and the little that is seen cannot tell, the prediction stands.
+void PoseEstimator::correct_tracked(const Mode& chosen, bool replaced, const Observation& observation) {
+    const int rays = economical_ ? options_.method.economy.fit_rays : options_.method.refinement.max_rays;
+    const StepContext context = fine_context(grid_to_fit(chosen.camera_from_object, observation, rays), observation);
+    const FineFit fit = fit_finely(chosen.camera_from_object, context);
+    const Eigen::Vector3d centre = views_->extent().centre_in_object();
+    observed_ = fit.covariance + fit.constant_covariance;
+    if (!track_ || replaced)
+        track_ = Track{fit.camera_from_object, fit.covariance, {}, fit.constant_covariance};
+    else if (!contradicts(*track_, fit, centre) ||
+             image_prefers(fit.camera_from_object, track_->camera_from_object, context))
+        track_ = correct_track(*track_, fit, centre);
+    tracked_->camera_from_object = track_->camera_from_object;
+}
+
 // The tracked mode first (where there is one), then where it was before a loss, the swarm's, then the best starts of a
 // search, which wrong ones may outdo until they are refined, then the rivals.
 std::vector<Mode> PoseEstimator::modes_to_refine(const Observation& observation, UpdateResult& result) {
@@ -109,13 +142,16 @@ std::vector<Mode> PoseEstimator::modes_to_refine(const Observation& observation,
     const Eigen::Vector3d centre = views_->extent().centre_in_object();
     std::vector<Mode> swarm;
     for (int i = 0; i < particles_.size(); ++i) swarm.push_back({particles_.poses[i], last_costs_[i], 0.0});
-    const std::vector<Mode> leaders = distinct_modes(swarm, refinement.modes, centre, mode_distance());
+    std::vector<Mode> leaders = distinct_modes(swarm, refinement.modes, centre, mode_distance());
     std::vector<Mode> modes;
-    // A particle may have brought the tracked mode nearer than its prediction: no need to refine both, once it holds.
-    const bool brought =
+    // Once a mode holds, one start is enough for it: its prediction where the arm's motion tells it, else the particle
+    // that came nearest.
+    const bool twice =
         economical_ && !leaders.empty() &&
         same_mode(leaders.front().camera_from_object, tracked_->camera_from_object, centre, mode_distance());
-    if (tracked_ && !brought) modes.push_back(*tracked_);
+    const bool predicted = confidence_nats_ > 0.0;
+    if (twice && predicted) leaders.erase(leaders.begin());
+    if (tracked_ && (predicted || !twice)) modes.push_back(*tracked_);
     if (before_loss_) modes.push_back({*before_loss_, 1.0, 0.0});  // it may only have been hidden for a while
     modes.insert(modes.end(), leaders.begin(), leaders.end());
     for (const Pose& pose : screened_) modes.push_back({pose, 1.0, 0.0});

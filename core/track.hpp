@@ -38,10 +38,13 @@ struct Track {
 void move_track(Track& track, const std::optional<Pose>& now_from_before, const MotionNoise& noise,
                 const Eigen::Vector3d& centre_in_object);
 
+// Whether they are farther apart than their spreads make likely (99.9 %).
+bool contradicts(const Track& predicted, const FineFit& observed, const Eigen::Vector3d& centre_in_object);
+
 // Prediction and observation brought together. The errors of both come from the same sensor, frame after frame, so the
 // mean is that of a Kalman filter, but along each direction (of the basis in which both are independent) the spread
 // falls to no less than half-way between a Kalman filter's and the better of the two. A prediction that the observation
-// contradicts (99.9 %) is left out: the object was moved.
+// contradicts is left out: the object was moved.
 Track correct_track(const Track& predicted, const FineFit& observed, const Eigen::Vector3d& centre_in_object);
 
 }  // namespace nearpose

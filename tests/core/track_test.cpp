@@ -40,6 +40,17 @@ TEST(Track, TheArmsMotionMovesThePoseAndWidensItsSpread) {
     EXPECT_GT(grown.eigenvalues().minCoeff(), 0.0) << "in every direction";
 }
 
+TEST(Track, APredictionIsContradictedBeyondTheChiSquareOfBothSpreads) {
+    // Along one axis, with 3 and 4 mm of spread: 5 mm together. 22.46 is 4.74 squared.
+    const Track track{kPose, diagonal(0.001, 0.003), {}};
+    FineFit fit;
+    fit.covariance = diagonal(0.001, 0.004);
+    fit.camera_from_object = perturb_about(kPose, twist(0, 0, 0, 0, 4.73 * 0.005, 0), kCentre);
+    EXPECT_FALSE(contradicts(track, fit, kCentre));
+    fit.camera_from_object = perturb_about(kPose, twist(0, 0, 0, 0, 4.75 * 0.005, 0), kCentre);
+    EXPECT_TRUE(contradicts(track, fit, kCentre));
+}
+
 TEST(Track, TheSpreadOfTheMotionIsThatOfItsScatter) {
     // Errors of the measured motion, in camera axes about the camera, moved to the twist about the centre.
     MotionNoise noise;
