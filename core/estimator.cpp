@@ -86,7 +86,7 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
     result.verdict = Verdict::kLost;
     if (tracked_) describe_estimate(observation, result);
     fine_.clear();
-    remember(result);
+    remember(observation, result);
     UpdateSeconds& seconds = result.seconds;
     seconds.total = seconds_since(update_began_);
     budget_.took(Stage::kFit, 1, seconds.total - seconds.start - seconds.particles - seconds.refinement);
@@ -95,14 +95,18 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
 
 // For how long the estimate has contradicted what is seen, for how long it has not been convincing, and how much it
 // took to be accepted.
-void PoseEstimator::remember(const UpdateResult& result) {
+void PoseEstimator::remember(const Observation& observation, const UpdateResult& result) {
     constexpr double kContradicted = 0.8, kConvincing = 0.93;
     const double agreement = result.verdict == Verdict::kLost ? 0.0 : result.pixels.agreement();
     frames_lost_ = agreement < kContradicted ? frames_lost_ + 1 : 0;
-    frames_doubtful_ = agreement < kConvincing ? frames_doubtful_ + 1 : 0;
+    const bool accepted = result.verdict == Verdict::kAccept;
+    if (accepted) frames_doubtful_ = 0;
+    doubtful_ = agreement < kConvincing;
+    frames_doubtful_ += doubtful_;
     constexpr double kKept = 0.7;  // a frame: what was accepted once may have been moved since
-    const double spoken_nats = result.verdict == Verdict::kAccept ? evidence_of(result.pixels) : 0.0;
-    confidence_nats_ = std::max(kKept * confidence_nats_, spoken_nats);
+    const int stride = grid_for(observation, refinement_now().max_rays).stride;
+    const double evidence = accepted ? evidence_of(result.pixels) * stride * stride : 0.0;
+    confidence_ = std::max(kKept * confidence_, evidence);
 }
 
 // What of `wanted` fits into the budget.
@@ -119,7 +123,8 @@ void PoseEstimator::reset() {
     before_loss_.reset();
     track_.reset();
     frames_held_ = frames_lost_ = frames_doubtful_ = 0;
-    confidence_nats_ = 0.0;
+    doubtful_ = false;
+    confidence_ = 0.0;
     rivals_tried_ = false;
 }
 
@@ -149,7 +154,7 @@ void PoseEstimator::predict(const std::optional<Pose>& now_from_before, UpdateRe
         if (tracked_) tracked_->camera_from_object = *motion * tracked_->camera_from_object;
         if (before_loss_) before_loss_ = *motion * *before_loss_;
     } else {
-        confidence_nats_ = 0.0;
+        confidence_ = 0.0;
     }
     if (track_) move_track(*track_, motion, options_.motion_noise, views_->extent().centre_in_object());
     const ModelExtent& extent = views_->extent();

@@ -113,7 +113,7 @@ class PoseEstimator {
     bool take_refined_mode(const Observation& observation, UpdateResult& result);
     Mode look_closer(const Mode& chosen, const Observation& observation, UpdateResult& result);
     int affordable(Stage stage, int wanted, int least, UpdateResult& result) const;
-    void remember(const UpdateResult& result);
+    void remember(const Observation& observation, const UpdateResult& result);
     double evidence_of(const PixelCost& pixels) const;
     bool image_prefers(const Pose& fitted, const Pose& predicted, const StepContext& context) const;
     bool search_again() const;
@@ -167,10 +167,11 @@ class PoseEstimator {
     bool economical_ = false;               // in this update one mode holds, and less will do
     bool rivals_tried_ = false;             // since the tracked mode was last replaced
     int frames_lost_ = 0;                   // updates in a row whose estimate contradicts what is seen
-    int frames_doubtful_ = 0;               // or does not convince
-    double confidence_nats_ = 0.0;  // by how much the image spoke for what was accepted last, fading; 0 where the
-                                    // arm's motion is not known
-    int frames_held_ = 0;           // updates since the tracked mode was last replaced
+    bool doubtful_ = false;                 // the last update's estimate did not convince
+    int frames_doubtful_ = 0;               // updates for which that was so since one was accepted
+    double confidence_ = 0.0;               // by how much the image spoke for what was accepted last, fading: nats
+                                            // times pixels a ray; 0 where the arm's motion is not known
+    int frames_held_ = 0;                   // updates since the tracked mode was last replaced
 };
 
 }  // namespace nearpose

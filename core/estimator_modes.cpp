@@ -29,9 +29,11 @@ bool PoseEstimator::take_refined_mode(const Observation& observation, UpdateResu
     const Eigen::Vector3d centre = views_->extent().centre_in_object();
     result.modes = distinct_modes(refined, static_cast<int>(refined.size()), centre, mode_distance());
     const Mode& tracked = refined.front();
+    const int stride = grid_for(observation, refinement.max_rays).stride;
     const Mode* most = &*std::max_element(result.modes.begin(), result.modes.end(), less_evident);
     const bool replaced =
-        !tracked_ || most->log_evidence > tracked.log_evidence + std::max(refinement.challenge_nats, confidence_nats_);
+        !tracked_ || most->log_evidence >
+                         tracked.log_evidence + std::max(refinement.challenge_nats, confidence_ / (stride * stride));
     Mode chosen = replaced ? *most : tracked;
     if (searching_ && !observation.segmented()) chosen = look_closer(chosen, observation, result);
     set_weights(result.modes);
@@ -116,7 +118,8 @@ double PoseEstimator::evidence_of(const PixelCost& pixels) const {
 bool PoseEstimator::image_prefers(const Pose& fitted, const Pose& predicted, const StepContext& context) const {
     const double of_fit = evidence_of(refined_cost(fitted, context, refinement_now()));
     const double of_prediction = evidence_of(refined_cost(predicted, context, refinement_now()));
-    return of_fit > of_prediction + confidence_nats_;
+    const int stride = context.observed.grid.stride;
+    return of_fit > of_prediction + confidence_ / (stride * stride);
 }
 
 // The chosen mode's fine fit and the track that the arm's motion carried, brought together. Where they contradict each
@@ -149,7 +152,7 @@ std::vector<Mode> PoseEstimator::modes_to_refine(const Observation& observation,
     const bool twice =
         economical_ && !leaders.empty() &&
         same_mode(leaders.front().camera_from_object, tracked_->camera_from_object, centre, mode_distance());
-    const bool predicted = confidence_nats_ > 0.0;
+    const bool predicted = confidence_ > 0.0;
     if (twice && predicted) leaders.erase(leaders.begin());
     if (tracked_ && (predicted || !twice)) modes.push_back(*tracked_);
     if (before_loss_) modes.push_back({*before_loss_, 1.0, 0.0});  // it may only have been hidden for a while

@@ -63,11 +63,11 @@ ParticleSet PoseEstimator::start_where_surfaces_meet(const Observation& observat
 // modes that are compared. A pose that only fails to convince is doubted at first and now and then: a model that is not
 // quite the part never convinces.
 bool PoseEstimator::search_again() const {
-    constexpr int kAtFirst = 8, kPeriod = 16;  // frames
+    constexpr int kAtFirst = 4, kPeriod = 16;  // frames
     const int period = options_.method.refinement.frames_to_search;
     if (options_.method.refinement.modes == 0 || period == 0) return false;
     if (frames_lost_ > 0) return frames_lost_ % period == 0;
-    return frames_doubtful_ > 0 && frames_doubtful_ % (frames_doubtful_ <= kAtFirst ? 2 : kPeriod) == 0;
+    return doubtful_ && (frames_doubtful_ <= kAtFirst || frames_doubtful_ % kPeriod == 0);
 }
 
 void PoseEstimator::keep_best_starts(const Observation& observation, UpdateResult& result) {

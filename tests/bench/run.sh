@@ -31,9 +31,10 @@ run() {
         --benchmark_min_time=0.05 --benchmark_enable_random_interleaving=true --benchmark_out="$out/$1.json" --benchmark_out_format=json >/dev/null 2>"$out/$1.log" ||
         { cat "$out/$1.log" >&2; exit 1; }
 }
-run stages 5 '^(views|neighbours|consensus|least_squares|likelihood|observation|fine_fit|refinement|start)/'
+run stages 5 '^(decoding|views|neighbours|consensus|least_squares|likelihood|observation|fine_fit|refinement|start)/'
 if [[ $quick -eq 0 ]]; then
     run frame 3 '^frame/'
+    run latency 3 '^(first|held|budget)/'
     for scale in particles image_width; do run "$scale" 1 "^scale/$scale/"; done
     for thousands in 2 12 106 957; do run "triangles-$thousands" 1 "^scale/thousand_triangles/$thousands/"; done
 fi

@@ -136,7 +136,8 @@ bool print_row(const Result& result, const Table& table) {
         met &= judge(text("%.0f MB of ", peak_mb) + goal, peak_mb <= std::stod(goal), verdict);
     }
     std::string details;
-    for (const char* counter : {"x", "points", "median_frame_ms", "last_error_mm", "pairs"})
+    for (const char* counter : {"x", "points", "median_frame_ms", "last_error_mm", "pairs", "accepted_share",
+                                "within_budget_share", "reduced_share", "median_elapsed_ms"})
         if (result.last.contains(counter))
             details += std::string(" ") + counter + text(" %.4g", result.last.at(counter).get<double>());
     std::printf("| %-28s | %10s | %-14s | %5.1f %% | %9s | %6s | %s%s |\n", result.name.c_str(),
