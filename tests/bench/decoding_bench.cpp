@@ -55,7 +55,7 @@ void raw(benchmark::State& state) {
 void depth(benchmark::State& state) {
     const Files files;
     for (auto _ : state) benchmark::DoNotOptimize(data_set::read_depth_png(files.depth(), kDepthScale_mm));
-    describe(state, 1.0, "unit=image bare=decoding/raw");
+    describe(state, 1.0, "unit=image");
 }
 
 void mask(benchmark::State& state) {
