@@ -103,10 +103,9 @@ void PoseEstimator::remember(const Observation& observation, const UpdateResult&
     if (accepted) frames_doubtful_ = 0;
     doubtful_ = agreement < kConvincing;
     frames_doubtful_ += doubtful_;
-    constexpr double kKept = 0.7;  // a frame: what was accepted once may have been moved since
     const int stride = grid_for(observation, refinement_now().max_rays).stride;
     const double evidence = accepted ? evidence_of(result.pixels) * stride * stride : 0.0;
-    confidence_ = std::max(kKept * confidence_, evidence);
+    confidence_ = std::max(confidence_, evidence);
 }
 
 // What of `wanted` fits into the budget.
@@ -149,12 +148,12 @@ void PoseEstimator::predict(const std::optional<Pose>& now_from_before, UpdateRe
         particles_ = systematic_resample(particles_, wanted, options_.seed, step_);
         result.resampled = true;
     }
+    constexpr double kKept = 0.7;  // a frame: what was accepted once may have been moved since
+    confidence_ *= motion ? kKept : 0.0;
     if (motion) {
         propagate(particles_, *motion);
         if (tracked_) tracked_->camera_from_object = *motion * tracked_->camera_from_object;
         if (before_loss_) before_loss_ = *motion * *before_loss_;
-    } else {
-        confidence_ = 0.0;
     }
     if (track_) move_track(*track_, motion, options_.motion_noise, views_->extent().centre_in_object());
     const ModelExtent& extent = views_->extent();

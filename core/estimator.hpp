@@ -115,7 +115,7 @@ class PoseEstimator {
     int affordable(Stage stage, int wanted, int least, UpdateResult& result) const;
     void remember(const Observation& observation, const UpdateResult& result);
     double evidence_of(const PixelCost& pixels) const;
-    bool image_prefers(const Pose& fitted, const Pose& predicted, const StepContext& context) const;
+    bool tells_as_much(const Pose& fitted, const StepContext& context) const;
     bool search_again() const;
     std::vector<Mode> near_modes(const std::vector<Mode>& modes) const;
     void bring_to_one_representative(std::vector<Mode>& modes) const;

@@ -114,16 +114,14 @@ double PoseEstimator::evidence_of(const PixelCost& pixels) const {
     return log_evidence(pixels, options, rays_per_evidence) - log_evidence(nothing, options, rays_per_evidence);
 }
 
-// Whether it speaks more for where the fit is than for where the arm's motion puts what was accepted before.
-bool PoseEstimator::image_prefers(const Pose& fitted, const Pose& predicted, const StepContext& context) const {
-    const double of_fit = evidence_of(refined_cost(fitted, context, refinement_now()));
-    const double of_prediction = evidence_of(refined_cost(predicted, context, refinement_now()));
+// Whether the image says as much about a pose as the one did in which it was accepted last.
+bool PoseEstimator::tells_as_much(const Pose& fitted, const StepContext& context) const {
     const int stride = context.observed.grid.stride;
-    return of_fit > of_prediction + confidence_ / (stride * stride);
+    return evidence_of(refined_cost(fitted, context, refinement_now())) * stride * stride >= confidence_;
 }
 
 // The chosen mode's fine fit and the track that the arm's motion carried, brought together. Where they contradict each
-// other and the little that is seen cannot tell, the prediction stands.
+// other the object was moved, unless the image says less than before: then the prediction stands.
 void PoseEstimator::correct_tracked(const Mode& chosen, bool replaced, const Observation& observation) {
     const int rays = economical_ ? options_.method.economy.fit_rays : options_.method.refinement.max_rays;
     const StepContext context = fine_context(grid_to_fit(chosen.camera_from_object, observation, rays), observation);
@@ -132,8 +130,7 @@ void PoseEstimator::correct_tracked(const Mode& chosen, bool replaced, const Obs
     observed_ = fit.covariance + fit.constant_covariance;
     if (!track_ || replaced)
         track_ = Track{fit.camera_from_object, fit.covariance, {}, fit.constant_covariance};
-    else if (!contradicts(*track_, fit, centre) ||
-             image_prefers(fit.camera_from_object, track_->camera_from_object, context))
+    else if (!contradicts(*track_, fit, centre) || tells_as_much(fit.camera_from_object, context))
         track_ = correct_track(*track_, fit, centre);
     tracked_->camera_from_object = track_->camera_from_object;
 }

@@ -155,6 +155,23 @@ TEST(Estimator, LittleThatIsSeenDoesNotOverturnWhatWasAcceptedAndAllOfItDoes) {
     }
 }
 
+TEST(Estimator, APartThatStartsToMoveIsFollowedInTheFrameItself) {
+    // By little enough that it is the same mode, and by much more than the track was off: the arm stands still.
+    PoseEstimator estimator(kPart, kSolver, small_options(method_default(), 0));
+    for (int frame = 0; frame < 6; ++frame)
+        EXPECT_EQ(estimator.update(observe_at(0), Pose::identity()).verdict, Verdict::kAccept) << frame;
+    const double step_m = 0.025 * kPart->extent().diameter_m();
+    const Eigen::Vector3d centre = kPart->extent().centre_in_object();
+    Pose moved = truth_at(0);
+    for (int frame = 0; frame < 3; ++frame) {
+        moved.translation.x() += step_m;
+        Mask mask;
+        const DepthImage image = render(*kPart, moved, kCamera, 0.9F, &mask);
+        const UpdateResult result = estimator.update(make_observation(image, kCamera, mask), Pose::identity());
+        EXPECT_LT((result.camera_from_object * centre - moved * centre).norm(), 0.2 * step_m) << frame;
+    }
+}
+
 TEST(Estimator, AJoltThatNobodyMeasuredIsFollowedInTheFrameItself) {
     EstimatorOptions options = small_options(method_default(), 0);
     options.num_particles = 100;
