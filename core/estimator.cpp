@@ -96,12 +96,12 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
 // For how long the estimate has contradicted what is seen, for how long it has not been convincing, and how much it
 // took to be accepted.
 void PoseEstimator::remember(const Observation& observation, const UpdateResult& result) {
-    constexpr double kContradicted = 0.8, kConvincing = 0.93;
+    constexpr double kContradicted = 0.8;
     const double agreement = result.verdict == Verdict::kLost ? 0.0 : result.pixels.agreement();
     frames_lost_ = agreement < kContradicted ? frames_lost_ + 1 : 0;
     const bool accepted = result.verdict == Verdict::kAccept;
     if (accepted) frames_doubtful_ = 0;
-    doubtful_ = agreement < kConvincing;
+    doubtful_ = agreement < kConvincingAgreement;
     frames_doubtful_ += doubtful_;
     const int stride = grid_for(observation, refinement_now().max_rays).stride;
     const double evidence = accepted ? evidence_of(result.pixels) * stride * stride : 0.0;

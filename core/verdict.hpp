@@ -30,6 +30,9 @@ struct Evidence {
     Matrix6d covariance_about_centre = Matrix6d::Zero();  // rotation first
 };
 
+// Share of the rays that agree, of those that say anything about the object: less does not convince.
+inline constexpr double kConvincingAgreement = 0.93;
+
 // From present evidence alone:
 //   lost      nothing is seen of the object, or what is seen contradicts the pose
 //   accept    the depth agrees with the pose wherever it says anything, the part ends where the model does, no other

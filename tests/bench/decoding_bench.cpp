@@ -1,10 +1,11 @@
 // Reading an image's files, apart from everything else: depth (16 bits) and mask of 640 x 480 pixels, PNG, from the
 // page cache; beside it the same counts read as they lie in memory.
 #include <unistd.h>
-#include <cstdio>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "apps/data_set/png_file.hpp"
 #include "tests/bench/described.hpp"
