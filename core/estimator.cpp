@@ -264,6 +264,7 @@ StepContext PoseEstimator::fine_context(const PixelGrid& grid, const Observation
 GradientStep PoseEstimator::step_now() const {
     GradientStep step = options_.method.step;
     if (economical_) step.max_rays = std::min(step.max_rays, options_.method.economy.step_rays);
+    if (carried_by_arm()) step.rounds = std::min(step.rounds, options_.method.economy.step_rounds);
     return step;
 }
 

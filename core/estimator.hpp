@@ -120,6 +120,7 @@ class PoseEstimator {
     std::vector<Mode> near_modes(const std::vector<Mode>& modes) const;
     void bring_to_one_representative(std::vector<Mode>& modes) const;
     bool one_mode_holds() const;
+    bool carried_by_arm() const;
     bool rivals_due() const;
     int particles_wanted(bool motion_measured) const;
     GradientStep step_now() const;

@@ -10,6 +10,11 @@
 namespace nearpose {
 namespace {
 
+Refinement unmoved(Refinement refinement) {
+    refinement.rounds = 0;
+    return refinement;
+}
+
 bool less_evident(const Mode& a, const Mode& b) {
     return a.log_evidence < b.log_evidence;
 }
@@ -92,8 +97,14 @@ std::vector<Mode> PoseEstimator::refine_all(const std::vector<Mode>& modes, cons
     const auto begin = std::chrono::steady_clock::now();
     const int count = static_cast<int>(modes.size());
     std::vector<MovedParticle> moved(modes.size());
-    parallel_for(count, options_.num_threads,
-                 [&](int k) { moved[k] = refine_mode(modes[k].camera_from_object, context, refinement); });
+    // Where the arm foretold the pose so well that the image agrees, the fine fit needs no rounds before it.
+    if (carried_by_arm() && count == 1)
+        moved[0] = refine_mode(modes[0].camera_from_object, context, unmoved(refinement));
+    const bool foretold = count == 1 && moved[0].agreement >= kConvincingAgreement;
+    if (!foretold) {
+        parallel_for(count, options_.num_threads,
+                     [&](int k) { moved[k] = refine_mode(modes[k].camera_from_object, context, refinement); });
+    }
     result.effort.modes += count;
     budget_.took(Stage::kModes, count, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
     std::vector<Mode> refined;
@@ -149,7 +160,7 @@ std::vector<Mode> PoseEstimator::modes_to_refine(const Observation& observation,
     const bool twice =
         economical_ && !leaders.empty() &&
         same_mode(leaders.front().camera_from_object, tracked_->camera_from_object, centre, mode_distance());
-    const bool predicted = confidence_ > 0.0;
+    const bool predicted = carried_by_arm();
     if (twice && predicted) leaders.erase(leaders.begin());
     if (tracked_ && (predicted || !twice)) modes.push_back(*tracked_);
     if (before_loss_) modes.push_back({*before_loss_, 1.0, 0.0});  // it may only have been hidden for a while
@@ -171,6 +182,11 @@ std::vector<Mode> PoseEstimator::modes_to_refine(const Observation& observation,
 bool PoseEstimator::one_mode_holds() const {
     constexpr double kTold = 0.01;
     return frames_held_ >= options_.method.refinement.frames_to_hold && rival_weight_ < kTold && frames_lost_ == 0;
+}
+
+// The prediction is that of an accepted pose by the measured motion of the arm.
+bool PoseEstimator::carried_by_arm() const {
+    return economical_ && confidence_ > 0.0;
 }
 
 // Rivals are tried in every frame until one mode holds.

@@ -123,7 +123,7 @@ FineFit fit_finely(const Pose& start, const StepContext& context) {
     const ModelExtent& extent = context.views.extent();
     const double sigma_m = context.observation.sigma_m(context.observation.mean_distance_m());
     // Of any of the model's points: less than the first is nothing, less than the second meets the same faces.
-    const double nothing_m = 0.1 * sigma_m, same_faces_m = 0.5 * sigma_m;
+    const double nothing_m = 0.2 * sigma_m, same_faces_m = sigma_m;
     Linearisation at{start, Eigen::VectorXd::Zero(field.num_unknowns()), 0.0};
     FineFit fit;
     View view = cast(start, context);

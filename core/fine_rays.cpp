@@ -21,19 +21,27 @@ class CellSum {
     void add(const SensorField::Row& place, const Row& row, double weight, NormalEquations& equations) {
         if (place.unknowns != unknowns_) flush(equations);
         unknowns_ = place.unknowns;
-        const Row weighted = weight * row;
-        sum_.noalias() += weighted * row.transpose();
+        add_lower_half(row, weight * row);
     }
     void flush(NormalEquations& equations) {
         std::array<Eigen::Index, kUsed> index{};
         for (int i = 0; i < kUsed; ++i)
             index[i] = i < 6 ? i : 6 + (i < 11 ? unknowns_[i - 6] : equations.unknowns + i - (kUsed - 1));
         for (int j = 0; j < kUsed; ++j)
-            for (int i = 0; i < kUsed; ++i) equations.sums(index[i], index[j]) += sum_(i, j);
+            for (int i = 0; i < kUsed; ++i) equations.sums(index[i], index[j]) += sum_(std::max(i, j), std::min(i, j));
         sum_.setZero();
     }
 
   private:
+    template <int kColumn = 0>
+    void add_lower_half(const Row& row, const Row& weighted) {
+        if constexpr (kColumn < kUsed) {
+            constexpr int kLength = kSize - (kColumn - kColumn % 2);  // two numbers at a time
+            sum_.col(kColumn).template tail<kLength>() += weighted[kColumn] * row.template tail<kLength>();
+            add_lower_half<kColumn + 1>(row, weighted);
+        }
+    }
+
     Eigen::Matrix<double, kSize, kSize> sum_ = Eigen::Matrix<double, kSize, kSize>::Zero();
     decltype(SensorField::Row::unknowns) unknowns_{};
 };

@@ -37,6 +37,7 @@ struct MovedParticle {
     double cost = 0.0;          // the pixel cost, or epsilon [m^2]
     double support = 0.0;       // with the pixel cost: share of the model's rays that agree
     double log_evidence = 0.0;  // of a refined mode
+    double agreement = 0.0;     // of a refined mode: share of the rays that judge it and agree
     double gain = 0.0;          // grid pixels by which the image is explained better than without the object; no mask
     StepCounts counts;
     StageSeconds seconds;

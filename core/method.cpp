@@ -69,6 +69,7 @@ void validate(const Economy& economy) {
     check_option("economy.min_particles_unmeasured", economy.min_particles_unmeasured, 1, 1e6);
     check_option("economy.kld_error", economy.kld_error, 1e-6, 10.0);
     check_option("economy.step_rays", economy.step_rays, 1, 1e7);
+    check_option("economy.step_rounds", economy.step_rounds, 0, 100);
     check_option("economy.rays", economy.rays, 1, 1e7);
     check_option("economy.fit_rays", economy.fit_rays, 1, 1e7);
     check_option("economy.rounds", economy.rounds, 1, 100);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "core/check.hpp"
 
@@ -86,10 +87,27 @@ void set_states(const float* depth_m, const std::uint8_t* mask, std::size_t coun
     }
 }
 
+int count_candidates(const PixelState* states, int count) {
+    constexpr int kBlock = 128;  // a byte holds its count
+    int sum = 0;
+    for (int begin = 0; begin < count; begin += kBlock) {
+        std::uint8_t of_block = 0;
+        for (int p = begin; p < std::min(count, begin + kBlock); ++p)
+            of_block = static_cast<std::uint8_t>(of_block + (states[p] == PixelState::kCandidate));
+        sum += of_block;
+    }
+    return sum;
+}
+
+void mark_columns(const PixelState* states, std::size_t count, std::uint8_t* columns) {
+    for (std::size_t u = 0; u < count; ++u)
+        columns[u] |= static_cast<std::uint8_t>(states[u] == PixelState::kCandidate);
+}
+
 }  // namespace
 
-void Observation::take_pixels(const std::vector<float>& depth_m, const std::optional<Mask>& mask) {
-    depth_m_ = depth_m;
+void Observation::take_pixels(std::vector<float> depth_m, const std::optional<Mask>& mask) {
+    depth_m_ = std::move(depth_m);
     keep_in_range(depth_m_.data(), depth_m_.size(), static_cast<float>(sensor_.min_range_m),
                   static_cast<float>(sensor_.max_range_m));
     states_.resize(depth_m_.size());
@@ -98,18 +116,22 @@ void Observation::take_pixels(const std::vector<float>& depth_m, const std::opti
 }
 
 void Observation::find_candidates() {
-    PixelBox box{camera_.width, camera_.height, 0, 0};
+    std::vector<std::uint8_t> columns(static_cast<std::size_t>(camera_.width), 0);
+    int first_v = camera_.height, last_v = 0;
     for (int v = 0; v < camera_.height; ++v) {
-        const auto row = states_.begin() + static_cast<std::ptrdiff_t>(v) * camera_.width, end = row + camera_.width;
-        const auto count = static_cast<int>(std::count(row, end, PixelState::kCandidate));
+        const PixelState* row = states_.data() + static_cast<std::ptrdiff_t>(v) * camera_.width;
+        const int count = count_candidates(row, camera_.width);
         if (count == 0) continue;
+        mark_columns(row, columns.size(), columns.data());
         num_candidates_ += count;
-        int first = 0, last = camera_.width;
-        while (row[first] != PixelState::kCandidate) ++first;
-        while (row[last - 1] != PixelState::kCandidate) --last;
-        box = {std::min(box.first_u, first), std::min(box.first_v, v), std::max(box.last_u, last), v + 1};
+        first_v = std::min(first_v, v);
+        last_v = v + 1;
     }
-    candidate_box_ = num_candidates_ > 0 ? box : PixelBox{};
+    if (num_candidates_ == 0) return;
+    const auto first = std::find(columns.begin(), columns.end(), 1);
+    const auto last = std::find(columns.rbegin(), columns.rend(), 1);
+    candidate_box_ = {static_cast<int>(first - columns.begin()), first_v, static_cast<int>(columns.rend() - last),
+                      last_v};
 }
 
 void Observation::sample_cloud(int max_points) {
@@ -187,7 +209,7 @@ ObservedGrid observe(const Observation& observation, const PixelGrid& grid) {
     return observed;
 }
 
-Observation make_observation(const DepthImage& depth, const PinholeCamera& camera, const std::optional<Mask>& mask,
+Observation make_observation(DepthImage depth, const PinholeCamera& camera, const std::optional<Mask>& mask,
                              const ObservationOptions& options) {
     validate(camera);
     validate(options.sensor);
@@ -198,7 +220,7 @@ Observation make_observation(const DepthImage& depth, const PinholeCamera& camer
     observation.camera_ = camera;
     observation.sensor_ = options.sensor;
     observation.segmented_ = mask.has_value();
-    observation.take_pixels(depth.depth_m, mask);
+    observation.take_pixels(std::move(depth.depth_m), mask);
     observation.find_candidates();
     observation.sample_cloud(options.max_points);
     observation.measure_cloud();

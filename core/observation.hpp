@@ -70,12 +70,12 @@ class Observation {
     Eigen::Vector3f normal_at(int pixel, int reach) const;
 
   private:
-    friend Observation make_observation(const DepthImage&, const PinholeCamera&, const std::optional<Mask>&,
+    friend Observation make_observation(DepthImage, const PinholeCamera&, const std::optional<Mask>&,
                                         const ObservationOptions&);
     friend Observation make_observation(const std::vector<Eigen::Vector3f>&, const PinholeCamera&,
                                         const ObservationOptions&);
     Observation() = default;
-    void take_pixels(const std::vector<float>& depth_m, const std::optional<Mask>& mask);
+    void take_pixels(std::vector<float> depth_m, const std::optional<Mask>& mask);
     void find_candidates();
     void sample_cloud(int max_points);
     void measure_cloud();
@@ -117,8 +117,8 @@ struct ObservedGrid {
 ObservedGrid observe(const Observation& observation, const PixelGrid& grid);
 
 // From an organised depth image. Pixels that are not finite or out of the sensor's range count as not measured. Throws
-// std::invalid_argument where the sizes of image, mask and camera differ.
-Observation make_observation(const DepthImage& depth, const PinholeCamera& camera, const std::optional<Mask>& mask,
+// std::invalid_argument where the sizes of image, mask and camera differ. An image that is handed over is not copied.
+Observation make_observation(DepthImage depth, const PinholeCamera& camera, const std::optional<Mask>& mask,
                              const ObservationOptions& options = {});
 
 // From a segmented, unorganised cloud of the object in camera coordinates [m], the paper's input. It is projected once
