@@ -103,7 +103,7 @@ PixelCost pixel_cost(const View& view, const Pose& camera_from_object, const Obs
         options.with_outline ? covered_by(view, observed.grid.size()) : std::vector<char>{};
     PixelCost result;
     result.segmented = observed.segmented;
-    double sum = 0.0, covered_weight = 0.0;
+    double sum = 0.0, covered_weight = 0.0, explained = 0.0;
     int candidates_covered = 0;
     for (std::size_t k = 0; k < view.size(); ++k) {
         const int index = view.pixels[k];
@@ -122,6 +122,7 @@ PixelCost pixel_cost(const View& view, const Pose& camera_from_object, const Obs
         const double cost = cost_of_hit(residual_m, sigma_m, state, observed.segmented, weight, options, result);
         sum += cost;
         if (!options.with_outline || result.agreeing == agreeing_before) continue;
+        explained += weight * options.unexplained_cost - cost;
         const Outline outline = outline_at(hit, observed, covered, options.outline_sigma_m);
         result.outline += outline != Outline::kInside;
         if (outline != Outline::kGoesOn) continue;
@@ -129,7 +130,10 @@ PixelCost pixel_cost(const View& view, const Pose& camera_from_object, const Obs
         if (observed.segmented) continue;
         --result.agreeing;
         sum += options.outline_cost - cost;
+        explained -= weight * options.unexplained_cost - cost;
     }
+    // The more of its outline the surface goes on beyond, the less what lies within is the object.
+    if (!observed.segmented) sum += result.flush_share() * result.flush_share() * std::max(0.0, explained);
     result.missing_model = observed.num_candidates - candidates_covered;
     result.gain = options.unexplained_cost * covered_weight - sum;
     double missing = result.missing_model;

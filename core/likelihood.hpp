@@ -66,7 +66,8 @@ struct PixelCost {
 // and where it is not, model behind something is no better than no model, which costs `unexplained_cost`. Pixels
 // without depth say nothing, and what a pixel says for the model counts with its weight. A face of the model laid into
 // a larger flat one agrees with it everywhere but is no object: a ray of it at the outline counts as `outline_cost`,
-// not as agreeing. `view` must have been generated at `camera_from_object` with observed.camera.
+// not as agreeing, and of what the rays within explain the square of flush_share() is taken off. `view` must have been
+// generated at `camera_from_object` with observed.camera.
 PixelCost pixel_cost(const View& view, const Pose& camera_from_object, const ObservedGrid& observed,
                      const PixelCostOptions& options);
 

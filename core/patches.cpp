@@ -158,7 +158,8 @@ PatchGrid make_patches(const Observation& observation, int reach, double toleran
     grid.height = camera.height / grid.stride;
     for (int v = 0; v < grid.height; ++v) {
         for (int u = 0; u < grid.width; ++u) {
-            const int pixel = v * grid.stride * camera.width + u * grid.stride;
+            const int middle = grid.stride / 2;
+            const int pixel = (v * grid.stride + middle) * camera.width + u * grid.stride + middle;
             const std::optional<SurfaceAnchor> measured = measured_at(observation, pixel, reach);
             Patch patch;
             if (observation.states()[pixel] == PixelState::kCandidate)

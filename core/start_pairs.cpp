@@ -11,9 +11,9 @@
 namespace nearpose {
 namespace {
 
-constexpr int kDistanceCells = 10, kAngleCells = 9;  // 20 degrees
+constexpr int kDistanceCells = 10, kAngleCells = 18;  // 10 degrees: of finer ones normals and anchors are too rough
 constexpr int kSecondPoints = 8;
-constexpr int kMaxPairAnchors = 500;  // their pairs are a quarter of a million
+constexpr int kMaxPairAnchors = 1000;  // their pairs are a million
 
 int angle_cell(double cosine) {
     const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));

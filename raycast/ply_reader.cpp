@@ -98,7 +98,8 @@ class PlyBody {
         std::memcpy(raw.data(), bytes_.data() + position_, size);
         position_ += size;
         constexpr bool kLittleHere = std::endian::native == std::endian::little;
-        if ((format_ == PlyFormat::kLittleEndian) != kLittleHere) std::reverse(raw.begin(), raw.begin() + size);
+        if ((format_ == PlyFormat::kLittleEndian) != kLittleHere)
+            std::reverse(raw.begin(), raw.begin() + std::min(size, raw.size()));
         switch (type) {
             case PlyType::kInt8:
                 return as<std::int8_t>(raw);

@@ -8,14 +8,17 @@
 
 namespace nearpose::bench {
 
-enum class Count { kFixed, kAdaptive };  // adaptive: fewer particles while one mode holds
+// Fixed: all particles, three rounds each, in every frame. Adaptive: fewer while one mode holds, as by default.
+enum class Count { kFixed, kAdaptive };
 
-// The default method, three rounds for each particle.
 inline PoseEstimator make_estimator(std::shared_ptr<const ViewGenerator> views, int num_particles, int num_threads,
                                     Count count = Count::kFixed) {
     EstimatorOptions options;
     options.num_particles = num_particles;
-    if (count == Count::kFixed) options.method.economy.min_particles = num_particles;
+    if (count == Count::kFixed) {
+        options.method.economy.min_particles = num_particles;
+        options.method.economy.step_rounds = options.method.step.rounds;
+    }
     options.num_threads = num_threads;
     return PoseEstimator(std::move(views), std::make_shared<CeresPoseSolver>(), options);
 }

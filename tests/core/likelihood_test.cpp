@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/core/analytic_part.hpp"
@@ -115,6 +116,30 @@ TEST(PixelCost, TurnedByHalfATurnIsWorse) {
         const Pose turned = kTruth * exp((Twist() << 0, 0, M_PI, 0, 0, 0).finished());
         EXPECT_GT(cost_at(turned, observation).cost, cost_at(kTruth, observation).cost + 0.05);
     }
+}
+
+// However large it is.
+TEST(PixelCost, AFaceLaidIntoALargerPlaneExplainsNothing) {
+    constexpr float kWall_m = 0.3F;
+    const Observation wall = make_observation(
+        DepthImage{kCamera.width, kCamera.height,
+                   std::vector<float>(static_cast<std::size_t>(kCamera.width * kCamera.height), kWall_m)},
+        kCamera, {});
+    const View view = kPart.generate(kTruth, kCamera);
+    float nearest_m = 1.0F;
+    for (const Eigen::Vector3f& point : view.points_in_object)
+        nearest_m = std::min(nearest_m, static_cast<float>((kTruth * point.cast<double>()).z()));
+    PixelCostOptions options;
+    options.with_outline = true;
+    const PixelCost laid = cost_at(shifted(0, 0, kWall_m - nearest_m), wall, options);
+    EXPECT_GT(laid.agreeing, 50);
+    EXPECT_GT(laid.flush_share(), 0.9);
+    const double within = laid.gain - (options.unexplained_cost - options.outline_cost) * laid.flush;
+    EXPECT_LT(within, 0.25 * options.unexplained_cost * laid.agreeing);
+    EXPECT_LT(laid.gain, 0.0);
+    const PixelCost truth = cost_at(kTruth, observe_part(false), options);
+    EXPECT_LT(truth.flush_share(), 0.1);
+    EXPECT_GT(truth.gain, 0.45 * truth.agreeing) << "an object that stands out keeps what it explains";
 }
 
 TEST(Likelihood, LiesBetweenCertainAndIgnorant) {
