@@ -11,7 +11,7 @@
 namespace nearpose {
 namespace {
 
-constexpr int kDistanceCells = 10, kAngleCells = 18;  // 10 degrees: of finer ones normals and anchors are too rough
+constexpr int kDistanceCells = 10, kAngleCells = 18;  // 10 degrees
 constexpr int kSecondPoints = 8;
 constexpr int kMaxPairAnchors = 1000;  // their pairs are a million
 
