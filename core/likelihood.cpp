@@ -122,15 +122,16 @@ PixelCost pixel_cost(const View& view, const Pose& camera_from_object, const Obs
         const double cost = cost_of_hit(residual_m, sigma_m, state, observed.segmented, weight, options, result);
         sum += cost;
         if (!options.with_outline || result.agreeing == agreeing_before) continue;
-        explained += weight * options.unexplained_cost - cost;
         const Outline outline = outline_at(hit, observed, covered, options.outline_sigma_m);
         result.outline += outline != Outline::kInside;
-        if (outline != Outline::kGoesOn) continue;
+        if (outline != Outline::kGoesOn) {
+            explained += weight * options.unexplained_cost - cost;
+            continue;
+        }
         ++result.flush;
         if (observed.segmented) continue;
         --result.agreeing;
         sum += options.outline_cost - cost;
-        explained -= weight * options.unexplained_cost - cost;
     }
     // The more of its outline the surface goes on beyond, the less what lies within is the object.
     if (!observed.segmented) sum += result.flush_share() * result.flush_share() * std::max(0.0, explained);
