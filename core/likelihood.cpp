@@ -86,10 +86,34 @@ double total_weight(const ObservedGrid& observed) {
     return sum;
 }
 
-std::vector<char> covered_by(const View& view, int grid_size) {
-    std::vector<char> covered(static_cast<std::size_t>(grid_size), 0);
+// Covers what lies between the first and the last covered pixel of a line of `count` pixels.
+void cover_between(const std::vector<char>& covered, int first, int step, int count, std::vector<char>& filled) {
+    int from = 0, to = count - 1;
+    while (from < count && !covered[first + from * step]) ++from;
+    while (to > from && !covered[first + to * step]) --to;
+    for (int i = from; i <= to; ++i) filled[first + i * step] = 1;
+}
+
+// Which of the grid's pixels show the model. Gaps between samples are filled along rows and columns: they are no
+// outline.
+std::vector<char> covered_by(const View& view, const PixelGrid& grid) {
+    std::vector<char> covered(static_cast<std::size_t>(grid.size()), 0);
     for (const int pixel : view.pixels) covered[pixel] = 1;
-    return covered;
+    if (!view.of_samples) return covered;
+    std::vector<char> filled = covered;
+    for (int v = 0; v < grid.height; ++v) cover_between(covered, v * grid.width, 1, grid.width, filled);
+    for (int u = 0; u < grid.width; ++u) cover_between(covered, u, grid.width, grid.height, filled);
+    return filled;
+}
+
+// Where the pixel's ray meets the tangent plane of a sample within the pixel; the sample where they hardly meet.
+Eigen::Vector3f on_ray(const Hit& sample, const ObservedGrid& observed) {
+    constexpr float kLeastCosine = 0.1F;
+    const int width = observed.grid.width;
+    const Eigen::Vector3f ray = observed.camera.ray(sample.index % width, sample.index / width).cast<float>();
+    const float slope = sample.normal.dot(ray);
+    return std::abs(slope) < kLeastCosine * ray.norm() ? sample.point
+                                                       : Eigen::Vector3f(sample.normal.dot(sample.point) / slope * ray);
 }
 
 }  // namespace
@@ -99,8 +123,7 @@ PixelCost pixel_cost(const View& view, const Pose& camera_from_object, const Obs
     const Eigen::Matrix3f rotation = camera_from_object.rotation_matrix().cast<float>();
     const Eigen::Vector3f translation = camera_from_object.translation.cast<float>();
     const double extra_variance_m2 = options.extra_sigma_m * options.extra_sigma_m;
-    const std::vector<char> covered =
-        options.with_outline ? covered_by(view, observed.grid.size()) : std::vector<char>{};
+    const std::vector<char> covered = options.with_outline ? covered_by(view, observed.grid) : std::vector<char>{};
     PixelCost result;
     result.segmented = observed.segmented;
     double sum = 0.0, covered_weight = 0.0, explained = 0.0;
@@ -109,7 +132,8 @@ PixelCost pixel_cost(const View& view, const Pose& camera_from_object, const Obs
         const int index = view.pixels[k];
         const PixelState state = observed.states[index];
         if (state == PixelState::kNoDepth) continue;
-        const Hit hit{rotation * view.points_in_object[k] + translation, rotation * view.normals_in_object[k], index};
+        Hit hit{rotation * view.points_in_object[k] + translation, rotation * view.normals_in_object[k], index};
+        if (view.of_samples) hit.point = on_ray(hit, observed);
         const double cosine = std::abs(hit.normal.dot(hit.point)) / hit.point.norm();
         const double sensor_m = observed.sigma_m[index];
         const double sigma_m = std::sqrt(sensor_m * sensor_m + extra_variance_m2);

@@ -15,6 +15,9 @@ struct View {
     std::vector<Eigen::Vector3f> points_in_object;   // [m]
     std::vector<Eigen::Vector3f> normals_in_object;  // unit
     std::vector<int> pixels;                         // row-major index into the camera's image, each at most once
+    // Made of samples of the surface: points lie within their pixels, not on the pixels' rays, and pixels may be
+    // missing.
+    bool of_samples = false;
 
     std::size_t size() const { return points_in_object.size(); }
 };

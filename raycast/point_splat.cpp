@@ -26,6 +26,7 @@ View nearest_points(const SurfaceSamples& samples, const Pose& camera_from_objec
 
     const Eigen::Vector3f camera_in_object = camera_from_object.inverse().translation.cast<float>();
     View view;
+    view.of_samples = true;
     for (std::size_t pixel = 0; pixel < num_pixels; ++pixel) {
         if (nearest[pixel] < 0) continue;
         const auto sample = static_cast<std::size_t>(nearest[pixel]);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "tests/core/analytic_part.hpp"
 
@@ -140,6 +142,49 @@ TEST(PixelCost, AFaceLaidIntoALargerPlaneExplainsNothing) {
     const PixelCost truth = cost_at(kTruth, observe_part(false), options);
     EXPECT_LT(truth.flush_share(), 0.1);
     EXPECT_GT(truth.gain, 0.45 * truth.agreeing) << "an object that stands out keeps what it explains";
+}
+
+// Of samples five times as dense as the pixels the nearest in each, as a rasteriser sees them; of every third pixel.
+View rasterised(const Pose& camera_from_object, const PinholeCamera& camera, int every) {
+    constexpr int kDensity = 5;
+    const PinholeCamera fine{kDensity * camera.width, kDensity * camera.height,   kDensity * camera.fx,
+                             kDensity * camera.fy,    kDensity * camera.cx + 2.0, kDensity * camera.cy + 2.0};
+    const View samples = kPart.generate(camera_from_object, fine);
+    std::map<int, std::pair<double, std::size_t>> nearest;  // depth [m] and sample, by pixel
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+        const int u = samples.pixels[k] % fine.width / kDensity, v = samples.pixels[k] / fine.width / kDensity;
+        const double depth_m = (camera_from_object * samples.points_in_object[k].cast<double>()).z();
+        const auto [entry, is_new] = nearest.try_emplace(v * camera.width + u, depth_m, k);
+        if (!is_new && depth_m < entry->second.first) entry->second = {depth_m, k};
+    }
+    View view;
+    for (const auto& [pixel, sample] : nearest) {
+        if ((pixel % camera.width + pixel / camera.width) % every != 0) continue;
+        view.points_in_object.push_back(samples.points_in_object[sample.second]);
+        view.normals_in_object.push_back(samples.normals_in_object[sample.second]);
+        view.pixels.push_back(pixel);
+    }
+    return view;
+}
+
+TEST(PixelCost, SamplesAreComparedOnThePixelsRays) {
+    const Pose tilted = kTruth * exp((Twist() << 0.6, 0.4, 0, 0, 0, 0).finished());
+    const DepthImage image = test::render(kPart, tilted, kCamera, 0.8F, nullptr);
+    const ObservedGrid observed = observe(make_observation(image, kCamera, {}), kGrid);
+    View view = rasterised(tilted, observed.camera, 1);
+    EXPECT_LT(pixel_cost(view, tilted, observed, {}).agreement(), 0.5) << "where they are, they are too near";
+    view.of_samples = true;
+    EXPECT_GT(pixel_cost(view, tilted, observed, {}).agreement(), 0.8) << "but where an edge crosses the pixel";
+}
+
+TEST(PixelCost, GapsBetweenSamplesAreNoOutline) {
+    const ObservedGrid observed = observe(observe_part(false), kGrid);
+    View view = rasterised(kTruth, observed.camera, 4);
+    PixelCostOptions options;
+    options.with_outline = true;
+    EXPECT_GT(pixel_cost(view, kTruth, observed, options).flush_share(), 0.8) << "they look like one";
+    view.of_samples = true;
+    EXPECT_LT(pixel_cost(view, kTruth, observed, options).flush_share(), 0.2);
 }
 
 TEST(Likelihood, LiesBetweenCertainAndIgnorant) {
