@@ -1,10 +1,8 @@
 #include "core/estimator.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 
 #include "core/check.hpp"
@@ -68,7 +66,7 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
     if (result.points_observed >= options_.min_candidates) {
         const ParticleSet predicted = particles_;
         searching_ = particles_.size() == 0 || search_again();
-        economical_ = options_.method.economy.on && one_mode_holds() && !searching_;
+        effort_ = effort_needed();
         if (searching_ && tracked_ && !before_loss_) before_loss_ = tracked_->camera_from_object;
         if (!searching_ && one_mode_holds()) before_loss_.reset();
         if (searching_ && pairs_) patches_ = patches_of(observation, *pairs_, options_.seed, step_);
@@ -122,7 +120,7 @@ void PoseEstimator::reset() {
     before_loss_.reset();
     track_.reset();
     frames_held_ = frames_lost_ = frames_doubtful_ = 0;
-    doubtful_ = false;
+    convinced_ = doubtful_ = false;
     confidence_ = 0.0;
     rivals_tried_ = false;
 }
@@ -261,20 +259,28 @@ StepContext PoseEstimator::fine_context(const PixelGrid& grid, const Observation
     return context_for(observation, *kept, options_.method.step);
 }
 
+// Of an update that begins. An estimate that convinces must be confirmed, not found; once it holds it is kept.
+PoseEstimator::Effort PoseEstimator::effort_needed() const {
+    if (!options_.method.economy.on || searching_) return Effort::kWhole;
+    if (one_mode_holds()) return Effort::kKeeping;
+    return convinced_ ? Effort::kConfirming : Effort::kWhole;
+}
+
 GradientStep PoseEstimator::step_now() const {
     GradientStep step = options_.method.step;
-    if (economical_) step.max_rays = std::min(step.max_rays, options_.method.economy.step_rays);
+    if (effort_ != Effort::kWhole) step.max_rays = std::min(step.max_rays, options_.method.economy.step_rays);
     if (carried_by_arm()) step.rounds = std::min(step.rounds, options_.method.economy.step_rounds);
     return step;
 }
 
 Refinement PoseEstimator::refinement_now() const {
     Refinement refinement = options_.method.refinement;
-    if (!economical_) return refinement;
+    if (effort_ == Effort::kWhole) return refinement;
     const Economy& economy = options_.method.economy;
-    refinement.max_rays = std::min(refinement.max_rays, economy.rays);
-    refinement.rounds = std::min(refinement.rounds, economy.rounds);
-    refinement.rivals = std::min(refinement.rivals, economy.rivals);
+    const bool keeping = effort_ == Effort::kKeeping;
+    refinement.max_rays = std::min(refinement.max_rays, keeping ? economy.rays : economy.confirming_rays);
+    refinement.rounds = std::min(refinement.rounds, keeping ? economy.rounds : economy.confirming_rounds);
+    if (keeping) refinement.rivals = std::min(refinement.rivals, economy.rivals);
     return refinement;
 }
 
@@ -286,81 +292,6 @@ StepContext PoseEstimator::context_for(const Observation& observation, const Obs
             observation, observed,
             step,        options_.method.cost,
             pixel_cost,  options_.method.scale_by_overlap};
-}
-
-// The part of the image in which the model lies at a pose; the whole image where it comes close to the camera.
-PixelBox PoseEstimator::box_around(const Pose& camera_from_object, const Observation& observation) const {
-    const PinholeCamera& camera = observation.camera();
-    const Eigen::Vector3d centre = camera_from_object * views_->extent().centre_in_object();
-    const double radius_m = 0.5 * views_->extent().diameter_m();
-    if (!(centre.z() > 1.2 * radius_m)) return observation.candidate_box();
-    const Eigen::Vector2d uv = camera.project(centre);
-    const double radius = camera.fx * radius_m / (centre.z() - radius_m);
-    constexpr double kFar = 1e6;  // pixels: an int must hold it
-    const auto pixel = [&](double value) { return static_cast<int>(std::clamp(value, -kFar, kFar)); };
-    return {pixel(uv.x() - radius), pixel(uv.y() - radius), pixel(uv.x() + radius), pixel(uv.y() + radius)};
-}
-
-namespace {
-
-PixelGrid grid_in(PixelBox box, double margin, const PinholeCamera& camera, int max_rays) {
-    const int margin_u = static_cast<int>(margin * (box.last_u - box.first_u));
-    const int margin_v = static_cast<int>(margin * (box.last_v - box.first_v));
-    box = {std::max(0, box.first_u - margin_u), std::max(0, box.first_v - margin_v),
-           std::min(camera.width, box.last_u + margin_u), std::min(camera.height, box.last_v + margin_v)};
-    if (box.empty()) box = {0, 0, camera.width, camera.height};
-    return grid_over(box, max_rays);
-}
-
-constexpr double kMargin = 0.2;  // of the box: model beyond the seen object must be able to show
-
-// The part of the image in which the model's box lies; none where a corner comes close to the camera's plane.
-std::optional<PixelBox> box_of_model(const Pose& camera_from_object, const ModelExtent& extent,
-                                     const PinholeCamera& camera) {
-    Eigen::AlignedBox2d pixels;
-    for (int corner = 0; corner < 8; ++corner) {
-        const Eigen::Vector3d upper((corner & 1) != 0, (corner & 2) != 0, (corner & 4) != 0);
-        const Eigen::Vector3d point =
-            camera_from_object *
-            Eigen::Vector3d(extent.box_min_in_object +
-                            upper.cwiseProduct(extent.box_max_in_object - extent.box_min_in_object));
-        if (!(point.z() > 0.1 * extent.diameter_m())) return std::nullopt;
-        pixels.extend(camera.project(point));
-    }
-    const Eigen::Vector2d size(camera.width, camera.height);
-    const Eigen::Vector2d first = pixels.min().array().floor().max(0.0).min(size.array());
-    const Eigen::Vector2d last = (pixels.max().array().floor() + 1.0).max(0.0).min(size.array());
-    return PixelBox{static_cast<int>(first.x()), static_cast<int>(first.y()), static_cast<int>(last.x()),
-                    static_cast<int>(last.y())};
-}
-
-}  // namespace
-
-// The fine fit has use for rays only where the model meets what was measured.
-PixelGrid PoseEstimator::grid_to_fit(const Pose& camera_from_object, const Observation& observation,
-                                     int max_rays) const {
-    PixelBox box = observation.candidate_box();
-    if (const auto model = box_of_model(camera_from_object, views_->extent(), observation.camera())) {
-        box = {std::max(box.first_u, model->first_u), std::max(box.first_v, model->first_v),
-               std::min(box.last_u, model->last_u), std::min(box.last_v, model->last_v)};
-    }
-    return grid_in(box, 0.0, observation.camera(), max_rays);
-}
-
-PixelGrid PoseEstimator::grid_around(const Pose& camera_from_object, const Observation& observation,
-                                     int max_rays) const {
-    return grid_in(box_around(camera_from_object, observation), 0.0, observation.camera(), max_rays);
-}
-
-// Views are cast where the object may be: around the segmented pixels, or around the tracked pose, or everywhere.
-PixelGrid PoseEstimator::grid_for(const Observation& observation, int max_rays) const {
-    if (observation.segmented()) return grid_in(observation.candidate_box(), kMargin, observation.camera(), max_rays);
-    PixelBox box = observation.candidate_box();
-    if (close_up_)
-        box = box_around(*close_up_, observation);
-    else if (tracked_ && !searching_)
-        box = box_around(tracked_->camera_from_object, observation);
-    return grid_in(box, kMargin, observation.camera(), max_rays);
 }
 
 void PoseEstimator::describe_estimate(const Observation& observation, UpdateResult& result) {
@@ -385,6 +316,7 @@ void PoseEstimator::describe_estimate(const Observation& observation, UpdateResu
     evidence.rival_weight = rival_weight_;
     evidence.rivals_tried = rivals_tried_;
     evidence.covariance_about_centre = about_centre(result.covariance, centre);
+    convinced_ = convinces(evidence);
     result.verdict = judge(evidence, options_.tolerance, options_.symmetries);
     result.pixels = evidence.pixels;
 }

@@ -103,6 +103,9 @@ class PoseEstimator {
     const ParticleSet& particles() const { return particles_; }
 
   private:
+    // What an update spends: all, less on each pose while an estimate is confirmed, or less of all while one is kept.
+    enum class Effort { kWhole, kConfirming, kKeeping };
+
     void predict(const std::optional<Pose>& now_from_before, UpdateResult& result);
     void start(const Observation& observation, UpdateResult& result);
     ParticleSet start_where_surfaces_meet(const Observation& observation, int count, int draws);
@@ -122,6 +125,7 @@ class PoseEstimator {
     bool one_mode_holds() const;
     bool carried_by_arm() const;
     bool rivals_due() const;
+    Effort effort_needed() const;
     int particles_wanted(bool motion_measured) const;
     GradientStep step_now() const;
     Refinement refinement_now() const;
@@ -165,9 +169,10 @@ class PoseEstimator {
     Matrix6d observed_ = Matrix6d::Zero();  // covariance of the last observation's own fit, about the centre
     double rival_weight_ = 0.0;             // when rivals were last tried
     bool searching_ = false;                // in this update the object may be anywhere
-    bool economical_ = false;               // in this update one mode holds, and less will do
+    Effort effort_ = Effort::kWhole;        // of this update
     bool rivals_tried_ = false;             // since the tracked mode was last replaced
     int frames_lost_ = 0;                   // updates in a row whose estimate contradicts what is seen
+    bool convinced_ = false;                // the last update's estimate is the right one, as far as can be told
     bool doubtful_ = false;                 // the last update's estimate did not convince
     int frames_doubtful_ = 0;               // updates for which that was so since one was accepted
     double confidence_ = 0.0;               // by how much the image spoke for what was accepted last, fading: nats

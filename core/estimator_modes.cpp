@@ -134,7 +134,8 @@ bool PoseEstimator::tells_as_much(const Pose& fitted, const StepContext& context
 // The chosen mode's fine fit and the track that the arm's motion carried, brought together. Where they contradict each
 // other the object was moved, unless the image says less than before: then the prediction stands.
 void PoseEstimator::correct_tracked(const Mode& chosen, bool replaced, const Observation& observation) {
-    const int rays = economical_ ? options_.method.economy.fit_rays : options_.method.refinement.max_rays;
+    const Method& method = options_.method;
+    const int rays = effort_ == Effort::kKeeping ? method.economy.fit_rays : method.refinement.max_rays;
     const StepContext context = fine_context(grid_to_fit(chosen.camera_from_object, observation, rays), observation);
     const FineFit fit = fit_finely(chosen.camera_from_object, context);
     const Eigen::Vector3d centre = views_->extent().centre_in_object();
@@ -155,10 +156,10 @@ std::vector<Mode> PoseEstimator::modes_to_refine(const Observation& observation,
     for (int i = 0; i < particles_.size(); ++i) swarm.push_back({particles_.poses[i], last_costs_[i], 0.0});
     std::vector<Mode> leaders = distinct_modes(swarm, refinement.modes, centre, mode_distance());
     std::vector<Mode> modes;
-    // Once a mode holds, one start is enough for it: its prediction where the arm's motion tells it, else the particle
-    // that came nearest.
+    // Once a mode convinced, one start is enough for it: its prediction where the arm's motion tells it, else the
+    // particle that came nearest.
     const bool twice =
-        economical_ && !leaders.empty() &&
+        effort_ != Effort::kWhole && !leaders.empty() &&
         same_mode(leaders.front().camera_from_object, tracked_->camera_from_object, centre, mode_distance());
     const bool predicted = carried_by_arm();
     if (twice && predicted) leaders.erase(leaders.begin());
@@ -186,7 +187,7 @@ bool PoseEstimator::one_mode_holds() const {
 
 // The prediction is that of an accepted pose by the measured motion of the arm.
 bool PoseEstimator::carried_by_arm() const {
-    return economical_ && confidence_ > 0.0;
+    return effort_ != Effort::kWhole && confidence_ > 0.0;
 }
 
 // Rivals are tried in every frame until one mode holds.

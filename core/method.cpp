@@ -73,6 +73,8 @@ void validate(const Economy& economy) {
     check_option("economy.rays", economy.rays, 1, 1e7);
     check_option("economy.fit_rays", economy.fit_rays, 1, 1e7);
     check_option("economy.rounds", economy.rounds, 1, 100);
+    check_option("economy.confirming_rays", economy.confirming_rays, 1, 1e7);
+    check_option("economy.confirming_rounds", economy.confirming_rounds, 1, 100);
     check_option("economy.rivals", economy.rivals, 0, 1e5);
 }
 

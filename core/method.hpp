@@ -45,7 +45,8 @@ struct Refinement {
 };
 
 // What is spared while one mode holds: the posterior is narrow then, and a few particles describe it (KLD sampling, Fox
-// 2003). At the start, after a loss and while a rival is not ruled out everything is as without.
+// 2003). From the first estimate that convinces until then all particles and rivals stay, and less is cast for each. At
+// the start, after a loss and while a rival is not ruled out everything is as without.
 struct Economy {
     bool on = false;
     int min_particles = 8;              // for a swarm of one mode
@@ -56,7 +57,9 @@ struct Economy {
     int step_rounds = 1;  // of a particle, where the arm's motion carried an accepted pose
     int rays = 800;       // of a refined view
     int rounds = 2;       // of refinement
-    int fit_rays = 3000;  // of the fine fit's view
+    int confirming_rays = 2000;  // of a refined view, until one mode holds
+    int confirming_rounds = 3;   // of refinement, until then
+    int fit_rays = 3000;         // of the fine fit's view
     int rivals = 32;
 };
 

@@ -37,19 +37,22 @@ bool within_tolerance(const Matrix6d& covariance, const Tolerance& tolerance, co
 
 }  // namespace
 
-Verdict judge(const Evidence& evidence, const Tolerance& tolerance, const Symmetries& symmetries) {
-    constexpr double kLeastToBelieve = 0.6;  // share of rays that agree
-    constexpr double kMostFlush = 0.4;       // share of the outline where the surface goes on
-    constexpr double kLeastOverlap = 0.55;   // of mask and model
-    constexpr double kLeastSupport = 0.3;    // share of the model that is seen at all
+bool convinces(const Evidence& evidence) {
+    constexpr double kMostFlush = 0.4;      // share of the outline where the surface goes on
+    constexpr double kLeastOverlap = 0.55;  // of mask and model
+    constexpr double kLeastSupport = 0.3;   // share of the model that is seen at all
     constexpr double kMostRivalWeight = 0.01;
     const PixelCost& pixels = evidence.pixels;
-    if (!evidence.seen || pixels.agreement() < kLeastToBelieve) return Verdict::kLost;
     const bool fits = pixels.agreement() >= kConvincingAgreement && pixels.support() >= kLeastSupport &&
                       pixels.flush_share() <= kMostFlush && pixels.overlap() >= kLeastOverlap;
-    const bool alone = evidence.rivals_tried && evidence.rival_weight <= kMostRivalWeight;
+    return evidence.seen && fits && evidence.rivals_tried && evidence.rival_weight <= kMostRivalWeight;
+}
+
+Verdict judge(const Evidence& evidence, const Tolerance& tolerance, const Symmetries& symmetries) {
+    constexpr double kLeastToBelieve = 0.6;  // share of rays that agree
+    if (!evidence.seen || evidence.pixels.agreement() < kLeastToBelieve) return Verdict::kLost;
     const bool sharp = within_tolerance(evidence.covariance_about_centre, tolerance, symmetries);
-    return fits && alone && sharp ? Verdict::kAccept : Verdict::kContinue;
+    return convinces(evidence) && sharp ? Verdict::kAccept : Verdict::kContinue;
 }
 
 }  // namespace nearpose

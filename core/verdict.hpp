@@ -33,10 +33,13 @@ struct Evidence {
 // Share of the rays that agree, of those that say anything about the object: less does not convince.
 inline constexpr double kConvincingAgreement = 0.93;
 
+// Whether the depth agrees with the pose wherever it says anything, the part ends where the model does, and no other
+// mode explains the image nearly as well: the right pose, how ever precisely it is known.
+bool convinces(const Evidence& evidence);
+
 // From present evidence alone:
 //   lost      nothing is seen of the object, or what is seen contradicts the pose
-//   accept    the depth agrees with the pose wherever it says anything, the part ends where the model does, no other
-//             mode explains the image nearly as well, and the 90 % region lies within the tolerance
+//   accept    it convinces, and the 90 % region lies within the tolerance
 //   continue  else
 // What a turn about an axis of revolution leaves open does not count.
 Verdict judge(const Evidence& evidence, const Tolerance& tolerance, const Symmetries& symmetries);

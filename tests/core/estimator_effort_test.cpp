@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "tests/core/estimator_scene.hpp"
@@ -108,6 +109,44 @@ TEST(Estimator, WhileOneModeHoldsFewParticlesDoAndAfterALossAllAreBack) {
     EXPECT_EQ(after.effort.particles, 40);
     EXPECT_GT(after.effort.starts, 0);
     EXPECT_LT(error_m(after, 0), 0.001);
+}
+
+TEST(Estimator, AnEstimateThatConvincesIsConfirmedWithFewerRaysButAllParticlesAndRivals) {
+    EstimatorOptions options = small_options(method_default(), 0);
+    PoseEstimator sparing(kPart, kSolver, options);
+    options.method.economy.on = false;
+    PoseEstimator whole(kPart, kSolver, options);
+    for (int frame = 0; frame < 5; ++frame) {
+        const std::optional<Pose> motion = frame > 0 ? std::optional(motion_to(frame)) : std::nullopt;
+        const UpdateResult less = sparing.update(observe_at(frame), motion);
+        const UpdateResult all = whole.update(observe_at(frame), motion);
+        EXPECT_EQ(less.effort.particles, 40) << frame;
+        EXPECT_EQ(less.effort.rivals, options.method.refinement.rivals) << frame;
+        EXPECT_LT(error_m(less, frame), 0.001) << frame;
+        if (frame == 0) {
+            EXPECT_EQ(less.counts.view_points, all.counts.view_points);
+        } else {
+            EXPECT_LT(less.counts.view_points, 0.6 * static_cast<double>(all.counts.view_points)) << frame;
+        }
+    }
+}
+
+TEST(Estimator, WhatTheArmForetoldIsFittedAtOnceAndOnlyThen) {
+    // Once one mode holds: one solve a particle, none for the mode, unless the prediction and the image disagree.
+    PoseEstimator estimator(kPart, kSolver, small_options(method_default(), 0));
+    UpdateResult result;
+    for (int frame = 0; frame < 8; ++frame)
+        result = estimator.update(observe_at(frame), frame > 0 ? std::optional(motion_to(frame)) : std::nullopt);
+    EXPECT_EQ(result.counts.solves, result.effort.particles);
+    EXPECT_LT(error_m(result, 7), 0.001);
+    // Two centimetres of motion that the arm does not tell.
+    result = estimator.update(observe_at(8), Pose::identity());
+    EXPECT_GT(result.counts.solves, result.effort.particles);
+    EXPECT_LT(error_m(result, 8), 0.001);
+    // And nothing is known of it.
+    result = estimator.update(observe_at(9), {});
+    EXPECT_GE(result.counts.solves, method_default().step.rounds * result.effort.particles);
+    EXPECT_LT(error_m(result, 9), 0.001);
 }
 
 TEST(Estimator, WhatDoesNotConvinceIsDoubtedAtFirstAndNowAndThen) {

@@ -68,6 +68,14 @@ TEST(Verdict, WhatATurnAboutAnAxisOfRevolutionLeavesOpenDoesNotCount) {
     EXPECT_EQ(judge(evidence, Tolerance{}, Symmetries{}), Verdict::kContinue);
 }
 
+TEST(Verdict, AnImprecisePoseMayConvince) {
+    Evidence evidence = convincing();
+    evidence.covariance_about_centre = Matrix6d::Identity();
+    EXPECT_TRUE(convinces(evidence));
+    evidence.rival_weight = 0.3;
+    EXPECT_FALSE(convinces(evidence));
+}
+
 TEST(Verdict, ToleranceIsTheUsers) {
     Evidence evidence = convincing();
     evidence.covariance_about_centre(4, 4) = 0.001 * 0.001;  // 90 % region: 2.5 mm
