@@ -28,7 +28,8 @@ const std::vector<std::string>& residual_names() {
 }
 
 const std::vector<std::string>& parts_of_method() {
-    static const std::vector<std::string> names = {"nothing", "fine_fit", "outline", "pairs", "rivals", "economy"};
+    static const std::vector<std::string> names = {"nothing", "fine_fit",   "outline", "pairs",
+                                                   "rivals",  "confidence", "doubts",  "economy"};
     return names;
 }
 
@@ -54,13 +55,15 @@ void leave_out(const std::string& part, Method& method) {
     const auto& parts = parts_of_method();
     if (std::find(parts.begin(), parts.end(), part) == parts.end())
         throw std::invalid_argument("without '" + part +
-                                    "': take nothing, fine_fit, outline, pairs, rivals or economy");
+                                    "': take nothing, fine_fit, outline, pairs, rivals, confidence, doubts or economy");
     if (part != "nothing" && method.refinement.modes == 0)
         throw std::invalid_argument("without " + part + ": only the default method has it");
     if (part == "fine_fit") method.refinement.fusion = false;
     if (part == "outline") method.refinement.outline = false;
     if (part == "pairs") method.start = Start::kSurface;
     if (part == "rivals") method.refinement.rivals = 0;
+    if (part == "confidence") method.refinement.confidence = false;
+    if (part == "doubts") method.refinement.doubts = false;
     if (part == "economy") method.economy.on = false;
 }
 

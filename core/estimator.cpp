@@ -99,10 +99,11 @@ void PoseEstimator::remember(const Observation& observation, const UpdateResult&
     frames_lost_ = agreement < kContradicted ? frames_lost_ + 1 : 0;
     const bool accepted = result.verdict == Verdict::kAccept;
     if (accepted) frames_doubtful_ = 0;
-    doubtful_ = agreement < kConvincingAgreement;
+    doubtful_ = options_.method.refinement.doubts && agreement < kConvincingAgreement;
     frames_doubtful_ += doubtful_;
     const int stride = grid_for(observation, refinement_now().max_rays).stride;
-    const double evidence = accepted ? evidence_of(result.pixels) * stride * stride : 0.0;
+    const double evidence =
+        accepted && options_.method.refinement.confidence ? evidence_of(result.pixels) * stride * stride : 0.0;
     confidence_ = std::max(confidence_, evidence);
 }
 

@@ -38,7 +38,9 @@ struct Refinement {
     int rival_period = 10;        // frames between such trials once one mode holds
     int rival_modes = 3;          // of them that are refined
     double min_support = 0.25;    // share of a mode's rays that agree with the depth; less shows nothing of the object
-    bool fusion = true;           // the chosen mode is fused with the track: arm's motion and sensor's errors
+    bool confidence = true;  // what was accepted yields to as much evidence as it was accepted for, and not to less
+    bool doubts = true;      // an estimate that does not convince is searched for anew, as one that is contradicted
+    bool fusion = true;      // the chosen mode is fused with the track: arm's motion and sensor's errors
     int frames_to_search =
         1;  // frames in a row whose estimate does not convince, after which the object is searched for anew; 0: never
     int frames_to_hold = 5;  // frames without replacement after which one mode holds

@@ -36,6 +36,8 @@ TEST(EstimatorSetup, LeavesOneNamedPartOut) {
     EXPECT_FALSE(without("outline").refinement.outline);
     EXPECT_EQ(without("pairs").start, Start::kSurface);
     EXPECT_EQ(without("rivals").refinement.rivals, 0);
+    EXPECT_FALSE(without("confidence").refinement.confidence);
+    EXPECT_FALSE(without("doubts").refinement.doubts);
     EXPECT_THROW(without("wheels"), std::invalid_argument);
     EstimatorSetup paper;
     paper.method = "paper";
