@@ -71,6 +71,10 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
         if (!searching_ && one_mode_holds()) before_loss_.reset();
         if (searching_ && pairs_) patches_ = patches_of(observation, *pairs_, options_.seed, step_);
         if (searching_) start(observation, result);
+        if (effort_ != Effort::kWhole && confidence_ > 0.0) {
+            foretold_ = foretold_pose(observation);
+            if (!foretold_) effort_ = Effort::kConfirming;
+        }
         move_particles(observation, result);
         seen = options_.method.refinement.modes > 0 ? take_refined_mode(observation, result)
                                                     : take_map(observation, result);
@@ -79,6 +83,7 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
     searching_ = false;
     patches_.reset();
     close_up_.reset();
+    foretold_.reset();
     screened_.clear();
     result.status = seen ? UpdateStatus::kEstimated : tracked_ ? UpdateStatus::kPredicted : UpdateStatus::kNoPose;
     result.verdict = Verdict::kLost;
@@ -270,7 +275,7 @@ PoseEstimator::Effort PoseEstimator::effort_needed() const {
 GradientStep PoseEstimator::step_now() const {
     GradientStep step = options_.method.step;
     if (effort_ != Effort::kWhole) step.max_rays = std::min(step.max_rays, options_.method.economy.step_rays);
-    if (carried_by_arm()) step.rounds = std::min(step.rounds, options_.method.economy.step_rounds);
+    if (foretold_) step.rounds = std::min(step.rounds, options_.method.economy.step_rounds);
     return step;
 }
 

@@ -123,7 +123,7 @@ class PoseEstimator {
     std::vector<Mode> near_modes(const std::vector<Mode>& modes) const;
     void bring_to_one_representative(std::vector<Mode>& modes) const;
     bool one_mode_holds() const;
-    bool carried_by_arm() const;
+    std::optional<MovedParticle> foretold_pose(const Observation& observation);
     bool rivals_due() const;
     Effort effort_needed() const;
     int particles_wanted(bool motion_measured) const;
@@ -158,7 +158,8 @@ class PoseEstimator {
     std::vector<Pose> screened_;        // while searching: the best starts on pairs
     std::optional<Pose> before_loss_;   // from a search on until one mode holds: the lost pose, as the arm carries it
     std::optional<Pose> close_up_;      // while searching: where the modes are told apart
-    std::list<ObservedGrid> fine_;      // during an update, the grids of refined views
+    std::optional<MovedParticle> foretold_;  // during an update: the prediction, where the image agrees with it
+    std::list<ObservedGrid> fine_;           // during an update, the grids of refined views
     TimeBudget budget_;
     std::chrono::steady_clock::time_point update_began_;
     ParticleSet particles_;

@@ -97,11 +97,9 @@ std::vector<Mode> PoseEstimator::refine_all(const std::vector<Mode>& modes, cons
     const auto begin = std::chrono::steady_clock::now();
     const int count = static_cast<int>(modes.size());
     std::vector<MovedParticle> moved(modes.size());
-    // Where the arm foretold the pose so well that the image agrees, the fine fit needs no rounds before it.
-    if (carried_by_arm() && count == 1)
-        moved[0] = refine_mode(modes[0].camera_from_object, context, unmoved(refinement));
-    const bool foretold = count == 1 && moved[0].agreement >= kConvincingAgreement;
-    if (!foretold) {
+    if (foretold_ && count == 1) {
+        moved[0] = *foretold_;  // the fine fit needs no rounds before it
+    } else {
         parallel_for(count, options_.num_threads,
                      [&](int k) { moved[k] = refine_mode(modes[k].camera_from_object, context, refinement); });
     }
@@ -156,14 +154,13 @@ std::vector<Mode> PoseEstimator::modes_to_refine(const Observation& observation,
     for (int i = 0; i < particles_.size(); ++i) swarm.push_back({particles_.poses[i], last_costs_[i], 0.0});
     std::vector<Mode> leaders = distinct_modes(swarm, refinement.modes, centre, mode_distance());
     std::vector<Mode> modes;
-    // Once a mode convinced, one start is enough for it: its prediction where the arm's motion tells it, else the
-    // particle that came nearest.
+    // Once a mode convinced, one start is enough for it: its prediction where the arm's motion foretold it, else the
+    // particle that came nearest, as where the object moves.
     const bool twice =
         effort_ != Effort::kWhole && !leaders.empty() &&
         same_mode(leaders.front().camera_from_object, tracked_->camera_from_object, centre, mode_distance());
-    const bool predicted = carried_by_arm();
-    if (twice && predicted) leaders.erase(leaders.begin());
-    if (tracked_ && (predicted || !twice)) modes.push_back(*tracked_);
+    if (twice && foretold_) leaders.erase(leaders.begin());
+    if (tracked_ && (foretold_ || !twice)) modes.push_back(*tracked_);
     if (before_loss_) modes.push_back({*before_loss_, 1.0, 0.0});  // it may only have been hidden for a while
     modes.insert(modes.end(), leaders.begin(), leaders.end());
     for (const Pose& pose : screened_) modes.push_back({pose, 1.0, 0.0});
@@ -185,9 +182,12 @@ bool PoseEstimator::one_mode_holds() const {
     return frames_held_ >= options_.method.refinement.frames_to_hold && rival_weight_ < kTold && frames_lost_ == 0;
 }
 
-// The prediction is that of an accepted pose by the measured motion of the arm.
-bool PoseEstimator::carried_by_arm() const {
-    return effort_ != Effort::kWhole && confidence_ > 0.0;
+// The prediction as it is: of an accepted pose by the measured motion of the arm, if the image agrees with it.
+std::optional<MovedParticle> PoseEstimator::foretold_pose(const Observation& observation) {
+    const Refinement refinement = refinement_now();
+    const StepContext context = fine_context(grid_for(observation, refinement.max_rays), observation);
+    const MovedParticle pose = refine_mode(tracked_->camera_from_object, context, unmoved(refinement));
+    return pose.agreement >= kConvincingAgreement ? std::optional(pose) : std::nullopt;
 }
 
 // Rivals are tried in every frame until one mode holds.
