@@ -269,7 +269,10 @@ StepContext PoseEstimator::fine_context(const PixelGrid& grid, const Observation
 PoseEstimator::Effort PoseEstimator::effort_needed() const {
     if (!options_.method.economy.on || searching_) return Effort::kWhole;
     if (one_mode_holds()) return Effort::kKeeping;
-    return convinced_ ? Effort::kConfirming : Effort::kWhole;
+    // With a third of the rays the rivals are told apart by a third of the evidence.
+    const double rays = refinement_now().max_rays;  // of the update before
+    const double share = std::min(1.0, options_.method.economy.confirming_rays / rays);
+    return convinced_ && std::pow(rival_weight_, share) <= kMostRivalWeight ? Effort::kConfirming : Effort::kWhole;
 }
 
 GradientStep PoseEstimator::step_now() const {

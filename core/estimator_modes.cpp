@@ -178,8 +178,8 @@ std::vector<Mode> PoseEstimator::modes_to_refine(const Observation& observation,
 
 // For a while, told from its rivals by the image, and it convinces.
 bool PoseEstimator::one_mode_holds() const {
-    constexpr double kTold = 0.01;
-    return frames_held_ >= options_.method.refinement.frames_to_hold && rival_weight_ < kTold && frames_lost_ == 0;
+    return frames_held_ >= options_.method.refinement.frames_to_hold && rival_weight_ < kMostRivalWeight &&
+           frames_lost_ == 0;
 }
 
 // The prediction as it is: of an accepted pose by the measured motion of the arm, if the image agrees with it.

@@ -41,7 +41,6 @@ bool convinces(const Evidence& evidence) {
     constexpr double kMostFlush = 0.4;      // share of the outline where the surface goes on
     constexpr double kLeastOverlap = 0.55;  // of mask and model
     constexpr double kLeastSupport = 0.3;   // share of the model that is seen at all
-    constexpr double kMostRivalWeight = 0.01;
     const PixelCost& pixels = evidence.pixels;
     const bool fits = pixels.agreement() >= kConvincingAgreement && pixels.support() >= kLeastSupport &&
                       pixels.flush_share() <= kMostFlush && pixels.overlap() >= kLeastOverlap;

@@ -32,6 +32,8 @@ struct Evidence {
 
 // Share of the rays that agree, of those that say anything about the object: less does not convince.
 inline constexpr double kConvincingAgreement = 0.93;
+// Share of the probability that other modes may have.
+inline constexpr double kMostRivalWeight = 0.01;
 
 // Whether the depth agrees with the pose wherever it says anything, the part ends where the model does, and no other
 // mode explains the image nearly as well: the right pose, how ever precisely it is known.
