@@ -67,7 +67,8 @@ struct PixelCost {
 // without depth say nothing, and what a pixel says for the model counts with its weight. A face of the model laid into
 // a larger flat one agrees with it everywhere but is no object: a ray of it at the outline counts as `outline_cost`,
 // not as agreeing, and of what the rays within explain the square of flush_share() is taken off. `view` must have been
-// generated at `camera_from_object` with observed.camera.
+// generated at `camera_from_object` with observed.camera; of a sample counts where its tangent plane meets its pixel's
+// ray.
 PixelCost pixel_cost(const View& view, const Pose& camera_from_object, const ObservedGrid& observed,
                      const PixelCostOptions& options);
 

@@ -56,7 +56,7 @@ struct Economy {
     double kld_error =
         0.15;             // bound on the Kullback-Leibler distance between swarm and posterior, with 99 % confidence
     int step_rays = 128;  // of a particle's view, and of a rival's
-    int step_rounds = 1;  // of a particle, where the arm's motion carried an accepted pose
+    int step_rounds = 1;  // of a particle, where the arm's motion foretold what is seen
     int rays = 800;       // of a refined view
     int rounds = 2;       // of refinement
     int confirming_rays = 2000;  // of a refined view, until one mode holds

@@ -144,7 +144,8 @@ TEST(PixelCost, AFaceLaidIntoALargerPlaneExplainsNothing) {
     EXPECT_GT(truth.gain, 0.45 * truth.agreeing) << "an object that stands out keeps what it explains";
 }
 
-// Of samples five times as dense as the pixels the nearest in each, as a rasteriser sees them; of every third pixel.
+// Of samples five times as dense as the pixels the nearest in each, as a rasteriser sees them; with `every` above 1
+// only in one of so many pixels.
 View rasterised(const Pose& camera_from_object, const PinholeCamera& camera, int every) {
     constexpr int kDensity = 5;
     const PinholeCamera fine{kDensity * camera.width, kDensity * camera.height,   kDensity * camera.fx,
