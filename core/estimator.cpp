@@ -297,6 +297,7 @@ StepContext PoseEstimator::context_for(const Observation& observation, const Obs
                                        const GradientStep& step) const {
     PixelCostOptions pixel_cost = options_.method.pixel_cost;
     pixel_cost.extra_sigma_m = step.extra_sigma_diameters * views_->extent().diameter_m();
+    pixel_cost.deep_m = options_.method.deep_diameters * views_->extent().diameter_m();
     return {*views_,     *solver_,
             observation, observed,
             step,        options_.method.cost,

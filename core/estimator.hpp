@@ -123,6 +123,7 @@ class PoseEstimator {
     std::vector<Mode> near_modes(const std::vector<Mode>& modes) const;
     void bring_to_one_representative(std::vector<Mode>& modes) const;
     bool one_mode_holds() const;
+    bool searching_everywhere(const Observation& observation) const;
     std::optional<MovedParticle> foretold_pose(const Observation& observation);
     bool rivals_due() const;
     Effort effort_needed() const;
@@ -131,6 +132,8 @@ class PoseEstimator {
     Refinement refinement_now() const;
     void weigh_rivals(const UpdateResult& result, bool tried);
     std::vector<Mode> modes_to_refine(const Observation& observation, UpdateResult& result);
+    std::vector<Mode> shortlisted(const std::vector<Mode>& swarm, const Observation& observation, UpdateResult& result);
+    MovedParticle tracked_unmoved(const Observation& observation);
     std::vector<Mode> best_rivals(const std::vector<Mode>& leaders, const Observation& observation,
                                   UpdateResult& result);
     std::vector<MovedParticle> move_all(const std::vector<Pose>& poses, const Observation& observation,

@@ -15,6 +15,10 @@ Refinement unmoved(Refinement refinement) {
     return refinement;
 }
 
+Mode mode_of(const MovedParticle& refined) {
+    return {refined.camera_from_object, refined.cost, refined.support, refined.log_evidence};
+}
+
 bool less_evident(const Mode& a, const Mode& b) {
     return a.log_evidence < b.log_evidence;
 }
@@ -30,7 +34,11 @@ bool PoseEstimator::take_refined_mode(const Observation& observation, UpdateResu
     const int count = affordable(Stage::kModes, static_cast<int>(modes.size()), 1, result);
     const bool all_refined = count == static_cast<int>(modes.size());
     modes.resize(count);
-    const std::vector<Mode> refined = refine_all(modes, observation, result);
+    std::vector<Mode> refined = refine_all(modes, observation, result);
+    if (confidence_ > 0.0 && !searching_) {  // where little is in view, refinement may slide off what was accepted
+        const MovedParticle unmoved = foretold_ ? *foretold_ : tracked_unmoved(observation);
+        if (unmoved.log_evidence > refined.front().log_evidence) refined.front() = mode_of(unmoved);
+    }
     const Eigen::Vector3d centre = views_->extent().centre_in_object();
     result.modes = distinct_modes(refined, static_cast<int>(refined.size()), centre, mode_distance());
     const Mode& tracked = refined.front();
@@ -40,7 +48,7 @@ bool PoseEstimator::take_refined_mode(const Observation& observation, UpdateResu
         !tracked_ || most->log_evidence >
                          tracked.log_evidence + std::max(refinement.challenge_nats, confidence_ / (stride * stride));
     Mode chosen = replaced ? *most : tracked;
-    if (searching_ && !observation.segmented()) chosen = look_closer(chosen, observation, result);
+    if (searching_everywhere(observation)) chosen = look_closer(chosen, observation, result);
     set_weights(result.modes);
     result.seconds.refinement = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     if (chosen.support < refinement.min_support) return false;
@@ -107,7 +115,7 @@ std::vector<Mode> PoseEstimator::refine_all(const std::vector<Mode>& modes, cons
     budget_.took(Stage::kModes, count, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
     std::vector<Mode> refined;
     for (const MovedParticle& mode : moved) {
-        refined.push_back({mode.camera_from_object, mode.cost, mode.support, mode.log_evidence});
+        refined.push_back(mode_of(mode));
         result.counts += mode.counts;
         result.seconds.stages += mode.seconds;
     }
@@ -123,14 +131,19 @@ double PoseEstimator::evidence_of(const PixelCost& pixels) const {
     return log_evidence(pixels, options, rays_per_evidence) - log_evidence(nothing, options, rays_per_evidence);
 }
 
-// Whether the image says as much about a pose as the one did in which it was accepted last.
+// Whether the image speaks for a fit as much as for the prediction that it contradicts, and says as much about it as
+// the one did in which the pose was accepted last.
 bool PoseEstimator::tells_as_much(const Pose& fitted, const StepContext& context) const {
+    const auto evidence_for = [&](const Pose& pose) {
+        return evidence_of(refined_cost(pose, context, refinement_now()));
+    };
     const int stride = context.observed.grid.stride;
-    return evidence_of(refined_cost(fitted, context, refinement_now())) * stride * stride >= confidence_;
+    const double evidence = evidence_for(fitted);
+    return evidence * stride * stride >= confidence_ && evidence >= evidence_for(track_->camera_from_object);
 }
 
 // The chosen mode's fine fit and the track that the arm's motion carried, brought together. Where they contradict each
-// other the object was moved, unless the image says less than before: then the prediction stands.
+// other the object was moved, unless the image says less than before or less for the fit: then the prediction stands.
 void PoseEstimator::correct_tracked(const Mode& chosen, bool replaced, const Observation& observation) {
     const Method& method = options_.method;
     const int rays = effort_ == Effort::kKeeping ? method.economy.fit_rays : method.refinement.max_rays;
@@ -145,14 +158,16 @@ void PoseEstimator::correct_tracked(const Mode& chosen, bool replaced, const Obs
     tracked_->camera_from_object = track_->camera_from_object;
 }
 
-// The tracked mode first (where there is one), then where it was before a loss, the swarm's, then the best starts of a
-// search, which wrong ones may outdo until they are refined, then the rivals.
+// The tracked mode first (where there is one), then where it was before a loss, the swarm's, among them the best starts
+// of a search, then the rivals.
 std::vector<Mode> PoseEstimator::modes_to_refine(const Observation& observation, UpdateResult& result) {
     const Refinement& refinement = options_.method.refinement;
     const Eigen::Vector3d centre = views_->extent().centre_in_object();
     std::vector<Mode> swarm;
     for (int i = 0; i < particles_.size(); ++i) swarm.push_back({particles_.poses[i], last_costs_[i], 0.0});
-    std::vector<Mode> leaders = distinct_modes(swarm, refinement.modes, centre, mode_distance());
+    std::vector<Mode> leaders = searching_everywhere(observation) && refinement.shortlist > 0
+                                    ? shortlisted(swarm, observation, result)
+                                    : distinct_modes(swarm, refinement.modes, centre, mode_distance());
     std::vector<Mode> modes;
     // Once a mode convinced, one start is enough for it: its prediction where the arm's motion foretold it, else the
     // particle that came nearest, as where the object moves.
@@ -163,10 +178,10 @@ std::vector<Mode> PoseEstimator::modes_to_refine(const Observation& observation,
     if (tracked_ && (foretold_ || !twice)) modes.push_back(*tracked_);
     if (before_loss_) modes.push_back({*before_loss_, 1.0, 0.0});  // it may only have been hidden for a while
     modes.insert(modes.end(), leaders.begin(), leaders.end());
-    for (const Pose& pose : screened_) modes.push_back({pose, 1.0, 0.0});
+    if (refinement.shortlist == 0)
+        for (const Pose& pose : screened_) modes.push_back({pose, 1.0, 0.0});
     // A search tries those of the mode that it has chosen.
-    const bool searching_all = searching_ && !observation.segmented();
-    if (refinement.rivals > 0 && rivals_due() && !searching_all) {
+    if (refinement.rivals > 0 && rivals_due() && !searching_everywhere(observation)) {
         const std::vector<Mode> near = near_modes(modes);
         const std::vector<Mode> rivals = best_rivals(modes, observation, result);
         modes.insert(modes.end(), near.begin(), near.end());
@@ -176,17 +191,60 @@ std::vector<Mode> PoseEstimator::modes_to_refine(const Observation& observation,
     return modes;
 }
 
+// Of the swarm's modes and the best starts, each refined a little on few rays where it puts the object, those that
+// explain most of the image: before that a wrong one may outdo the right one.
+std::vector<Mode> PoseEstimator::shortlisted(const std::vector<Mode>& swarm, const Observation& observation,
+                                             UpdateResult& result) {
+    constexpr int kKept = 8, kRays = 800, kRounds = 3;
+    const auto begin = std::chrono::steady_clock::now();
+    const Eigen::Vector3d centre = views_->extent().centre_in_object();
+    Refinement refinement = refinement_now();
+    refinement.rounds = std::min(refinement.rounds, kRounds);
+    const std::vector<Mode> distinct = distinct_modes(swarm, refinement.shortlist, centre, mode_distance());
+    std::vector<Mode> modes;
+    for (std::size_t k = 0; k < std::max(distinct.size(), screened_.size()); ++k) {
+        if (k < distinct.size()) modes.push_back(distinct[k]);
+        if (k < screened_.size()) modes.push_back({screened_[k], 1.0, 0.0});
+    }
+    const int count = affordable(Stage::kShortlist, static_cast<int>(modes.size()), kKept, result);
+    modes.resize(count);
+    std::vector<MovedParticle> moved(modes.size());
+    parallel_for(count, options_.num_threads, [&](int k) {
+        const Pose& pose = modes[k].camera_from_object;
+        const ObservedGrid observed = observe(observation, grid_around(pose, observation, kRays));
+        moved[k] = refine_mode(pose, context_for(observation, observed, options_.method.step), refinement);
+        modes[k] = {moved[k].camera_from_object, -moved[k].gain * observed.grid.stride * observed.grid.stride, 0.0};
+    });
+    for (const MovedParticle& mode : moved) {
+        result.counts += mode.counts;
+        result.seconds.stages += mode.seconds;
+    }
+    budget_.took(Stage::kShortlist, count,
+                 std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    return distinct_modes(modes, kKept, centre, mode_distance());
+}
+
+// The object may be anywhere in the image.
+bool PoseEstimator::searching_everywhere(const Observation& observation) const {
+    return searching_ && !observation.segmented();
+}
+
 // For a while, told from its rivals by the image, and it convinces.
 bool PoseEstimator::one_mode_holds() const {
     return frames_held_ >= options_.method.refinement.frames_to_hold && rival_weight_ < kMostRivalWeight &&
            frames_lost_ == 0;
 }
 
-// The prediction as it is: of an accepted pose by the measured motion of the arm, if the image agrees with it.
-std::optional<MovedParticle> PoseEstimator::foretold_pose(const Observation& observation) {
+// What the image says of the prediction as it is.
+MovedParticle PoseEstimator::tracked_unmoved(const Observation& observation) {
     const Refinement refinement = refinement_now();
     const StepContext context = fine_context(grid_for(observation, refinement.max_rays), observation);
-    const MovedParticle pose = refine_mode(tracked_->camera_from_object, context, unmoved(refinement));
+    return refine_mode(tracked_->camera_from_object, context, unmoved(refinement));
+}
+
+// The prediction of an accepted pose by the measured motion of the arm, if the image agrees with it.
+std::optional<MovedParticle> PoseEstimator::foretold_pose(const Observation& observation) {
+    const MovedParticle pose = tracked_unmoved(observation);
     return pose.agreement >= kConvincingAgreement ? std::optional(pose) : std::nullopt;
 }
 

@@ -34,14 +34,15 @@ ParticleSet PoseEstimator::start_where_surfaces_meet(const Observation& observat
     ParticleSet particles;
     if (pairs_ && patches_) {
         // Where nothing is segmented most draws miss the object.
-        constexpr int kDrawsUnsegmented = 4;
-        constexpr std::ptrdiff_t kRefined = 8;
+        constexpr int kDrawsUnsegmented = 6;
+        constexpr int kRefined = 8;
+        const int kept = std::max(kRefined, method.refinement.shortlist);
         const bool segmented = observation.segmented();
         const PairStartOptions start{(segmented ? 1 : kDrawsUnsegmented) * draws, segmented ? count / 2 : 2 * count / 3,
                                      static_cast<std::uint64_t>(count), options_.num_threads};
         particles.poses = start_on_pairs(observation, *pairs_, *patches_, start, options_.seed, step_);
         const auto first = particles.poses.begin();
-        if (!segmented) screened_.assign(first, first + std::min<std::ptrdiff_t>(kRefined, particles.size()));
+        if (!segmented) screened_.assign(first, first + std::min(kept, particles.size()));
     }
     const int left = count - particles.size();
     const int on_sphere = observation.segmented() ? left / 2 : 0;

@@ -148,6 +148,7 @@ MovedParticle refine_mode(const Pose& camera_from_object, const StepContext& con
     const PixelCost cost = refined_cost(moved.camera_from_object, context, refinement);
     moved.cost = cost.cost;
     moved.support = cost.support();
+    moved.gain = cost.gain;
     moved.agreement = cost.agreement();
     moved.log_evidence = log_evidence(cost, context.pixel_cost, refinement.rays_per_evidence);
     return moved;

@@ -1,5 +1,6 @@
 #include "core/likelihood.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -25,14 +26,20 @@ double negative_log_likelihood(double overlap_scaled_mse_m2, double sensor_sigma
 
 namespace {
 
+// Of model before the measured surface, where nothing is segmented.
+double cost_in_front(double depth_m, const PixelCostOptions& options) {
+    if (!(options.deep_m > 0.0)) return 1.0;
+    return 1.0 + (options.deep_cost - 1.0) * std::clamp(depth_m / options.deep_m - 1.0, 0.0, 1.0);
+}
+
 // The cost of one ray that meets the model, and its count.
-double cost_of_hit(double residual_m, double sigma_m, PixelState state, bool segmented, double weight,
-                   const PixelCostOptions& options, PixelCost& counts) {
+double cost_of_hit(double in_front_m, double residual_m, double sigma_m, PixelState state, bool segmented,
+                   double weight, const PixelCostOptions& options, PixelCost& counts) {
     const double r = residual_m / (options.truncation_sigmas * sigma_m);  // positive: the model is in front
     if (r > 1.0) {
         ++counts.model_in_front;
         ++counts.contradicted;
-        return 1.0;
+        return segmented ? 1.0 : cost_in_front(in_front_m, options);
     }
     if (r < -1.0) {
         ++counts.model_behind;
@@ -137,13 +144,14 @@ PixelCost pixel_cost(const View& view, const Pose& camera_from_object, const Obs
         const double cosine = std::abs(hit.normal.dot(hit.point)) / hit.point.norm();
         const double sensor_m = observed.sigma_m[index];
         const double sigma_m = std::sqrt(sensor_m * sensor_m + extra_variance_m2);
-        const double residual_m = (observed.depth_m[index] - hit.point.z()) * cosine;
+        const double in_front_m = observed.depth_m[index] - hit.point.z();
         candidates_covered += state == PixelState::kCandidate;
         ++result.model_rays;
         const int agreeing_before = result.agreeing;
         const double weight = observed.weight(index);
         covered_weight += weight;
-        const double cost = cost_of_hit(residual_m, sigma_m, state, observed.segmented, weight, options, result);
+        const double cost =
+            cost_of_hit(in_front_m, in_front_m * cosine, sigma_m, state, observed.segmented, weight, options, result);
         sum += cost;
         if (!options.with_outline || result.agreeing == agreeing_before) continue;
         const Outline outline = outline_at(hit, observed, covered, options.outline_sigma_m);

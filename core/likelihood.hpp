@@ -22,9 +22,13 @@ double negative_log_likelihood(double overlap_scaled_mse_m2, double sensor_sigma
 struct PixelCostOptions {
     double truncation_sigmas = 3.0;  // a residual beyond it is no better than any other
     double extra_sigma_m = 0.0;      // added in quadrature to the sensor's noise: how far off a pose may still be [m]
-    double occluded_cost = 0.3;      // of model behind something measured: it may be hidden
-    double unexplained_cost = 0.5;   // of a measured pixel that no model covers, where nothing is segmented
-    bool with_outline = false;       // whether rays at the model's outline are looked at
+    double deep_cost = 4.0;  // where nothing is segmented: of model that lies deep before what is measured, which no
+                             // fault of a CAD and no mixed pixel explains; 1: depth makes no difference
+    double deep_m =
+        0.0;  // 0: none is deep; else model farther before it costs more than 1, from twice that on deep_cost
+    double occluded_cost = 0.3;     // of model behind something measured: it may be hidden
+    double unexplained_cost = 0.5;  // of a measured pixel that no model covers, where nothing is segmented
+    bool with_outline = false;      // whether rays at the model's outline are looked at
     double outline_cost = 3.0;  // where nothing is segmented: of one beyond which the measured surface just goes on,
                                 // as if the object had no end there
     double outline_sigma_m = 0.001;  // how far the model's surface may be off there, beside the sensor's noise [m]
@@ -33,7 +37,7 @@ struct PixelCostOptions {
 
 // Verdicts of the pixels of one view.
 struct PixelCost {
-    double cost = 1.0;       // mean over the judged pixels, in 0..1; more where outline_cost is
+    double cost = 1.0;       // mean over the judged pixels, in 0..1; more where outline_cost or deep_cost is
     double gain = 0.0;       // pixels' cost without the object less that with it, where nothing is segmented
     int judged = 0;          // pixels with model or candidate, and depth
     int model_rays = 0;      // of them those with model
@@ -63,12 +67,13 @@ struct PixelCost {
 // cos(normal, ray) / sigma. Where the observation is segmented:
 //   candidate pixel: min(r^2 / truncation^2, 1); no model there: 1
 //   background pixel: model in front of it: 1; behind it or on it: occluded_cost
-// and where it is not, model behind something is no better than no model, which costs `unexplained_cost`. Pixels
-// without depth say nothing, and what a pixel says for the model counts with its weight. A face of the model laid into
-// a larger flat one agrees with it everywhere but is no object: a ray of it at the outline counts as `outline_cost`,
-// not as agreeing, and of what the rays within explain the square of flush_share() is taken off. `view` must have been
-// generated at `camera_from_object` with observed.camera; of a sample counts where its tangent plane meets its pixel's
-// ray.
+// and where it is not, model behind something is no better than no model, which costs `unexplained_cost`, and model in
+// front of something costs 1 up to deep_m and then more, up to deep_cost at twice that depth: a wrong pose among other
+// things may agree with much, but the sensor looks through it by far. Pixels without depth say nothing, and what a
+// pixel says for the model counts with its weight. A face of the model laid into a larger flat one agrees with it
+// everywhere but is no object: a ray of it at the outline counts as `outline_cost`, not as agreeing, and of what the
+// rays within explain the square of flush_share() is taken off. `view` must have been generated at `camera_from_object`
+// with observed.camera; of a sample counts where its tangent plane meets its pixel's ray.
 PixelCost pixel_cost(const View& view, const Pose& camera_from_object, const ObservedGrid& observed,
                      const PixelCostOptions& options);
 

@@ -59,6 +59,7 @@ void validate(const Refinement& refinement) {
     check_option("refinement.rivals", refinement.rivals, 0, 1e5);
     check_option("refinement.rival_period", refinement.rival_period, 1, 1e6);
     check_option("refinement.rival_modes", refinement.rival_modes, 0, 1000);
+    check_option("refinement.shortlist", refinement.shortlist, 0, 1e5);
     check_option("refinement.min_support", refinement.min_support, 0.0, 1.0);
     check_option("refinement.frames_to_search", refinement.frames_to_search, 0, 1e6);
     check_option("refinement.frames_to_hold", refinement.frames_to_hold, 0, 1e6);
@@ -88,6 +89,8 @@ void validate(const Method& method) {
     validate(method.refinement);
     validate(method.economy);
     check_option("pixel_cost.truncation_sigmas", method.pixel_cost.truncation_sigmas, 0.1, 100.0);
+    check_option("pixel_cost.deep_cost", method.pixel_cost.deep_cost, 1.0, 100.0);
+    check_option("deep_diameters", method.deep_diameters, 0.0, 10.0);
     check_option("pixel_cost.occluded_cost", method.pixel_cost.occluded_cost, 0.0, 1.0);
     check_option("pixel_cost.unexplained_cost", method.pixel_cost.unexplained_cost, 0.0, 1.0);
     check_option("pixel_cost.outline_cost", method.pixel_cost.outline_cost, 0.0, 100.0);

@@ -37,10 +37,12 @@ struct Refinement {
     int rivals = 0;               // poses that the best modes may be mistaken for, tried as further modes
     int rival_period = 10;        // frames between such trials once one mode holds
     int rival_modes = 3;          // of them that are refined
-    double min_support = 0.25;    // share of a mode's rays that agree with the depth; less shows nothing of the object
-    bool confidence = true;  // what was accepted yields to as much evidence as it was accepted for, and not to less
-    bool doubts = true;      // an estimate that does not convince is searched for anew, as one that is contradicted
-    bool fusion = true;      // the chosen mode is fused with the track: arm's motion and sensor's errors
+    int shortlist = 24;  // of a search where nothing is segmented: so many of the swarm's modes and of the starts
+                         // are looked at with few rays before the best are refined; 0: the first are
+    double min_support = 0.25;  // share of a mode's rays that agree with the depth; less shows nothing of the object
+    bool confidence = true;     // what was accepted yields to as much evidence as it was accepted for, and not to less
+    bool doubts = true;         // an estimate that does not convince is searched for anew, as one that is contradicted
+    bool fusion = true;         // the chosen mode is fused with the track: arm's motion and sensor's errors
     int frames_to_search =
         1;  // frames in a row whose estimate does not convince, after which the object is searched for anew; 0: never
     int frames_to_hold = 5;  // frames without replacement after which one mode holds
@@ -75,6 +77,7 @@ struct Method {
     Cost cost = Cost::kPixels;
     bool scale_by_overlap = true;  // of kOverlapMse: times m / n; false: the plain mean squared error of the pairs
     PixelCostOptions pixel_cost;
+    double deep_diameters = 0.05;  // of the pixel cost: its deep_m; 0: none is deep
     Refinement refinement;
     Economy economy;
     double diffusion_rotation_rad = 0.03;

@@ -1,6 +1,7 @@
 #include "core/start_pairs.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -15,10 +16,33 @@ constexpr int kDistanceCells = 10, kAngleCells = 18;  // 10 degrees
 constexpr int kSecondPoints = 8;
 constexpr int kMaxPairAnchors = 1000;  // their pairs are a million
 
-int angle_cell(double cosine) {
-    const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
-    return std::min(kAngleCells - 1, static_cast<int>(angle / M_PI * kAngleCells));
-}
+// Which of the cells of equal angle a cosine lies in. Cosines come in bins so narrow that each meets at most one border
+// of the cells: a look-up instead of an arc cosine.
+class AngleCells {
+  public:
+    AngleCells() noexcept {
+        for (int cell = 0; cell < kAngleCells; ++cell)
+            smallest_cosine_[cell] = static_cast<float>(std::cos(M_PI * (cell + 1) / kAngleCells));
+        for (int bin = 0, cell = kAngleCells - 1; bin < kBins; ++bin) {
+            const float largest = static_cast<float>(bin + 1) / kBinsPerUnit - 1.0F;
+            while (cell > 0 && largest > smallest_cosine_[cell - 1]) --cell;
+            cell_at_largest_[bin] = cell;
+        }
+    }
+    int operator()(float cosine) const {
+        const int bin = std::clamp(static_cast<int>((cosine + 1.0F) * kBinsPerUnit), 0, kBins - 1);
+        const int cell = cell_at_largest_[bin];
+        return std::min(kAngleCells - 1, cell + (cosine < smallest_cosine_[cell] ? 1 : 0));
+    }
+
+  private:
+    static constexpr float kBinsPerUnit = 128.0F;
+    static constexpr int kBins = 256;
+    std::array<float, kAngleCells> smallest_cosine_{};
+    std::array<int, kBins> cell_at_largest_{};  // of a bin's largest cosine
+};
+
+const AngleCells angle_cell;
 
 // Right-handed axes of an oriented pair: the first normal, the line between the points made square to it, and the
 // third. Nothing where the line runs along the normal.

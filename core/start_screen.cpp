@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t kFirst = 8, kFirstModel = 16;  // points
 constexpr std::size_t kGlance = 32, kGlanceModel = 64;
+constexpr double kRough = 2.0;  // times the tolerance: a guess that was not pulled yet is off by as much
 
 // Poses of one cell are of one basin; the cells are coarse.
 std::array<int, 6> cell_of_pose(const Pose& pose, double diameter_m, const Eigen::Vector3d& centre) {
@@ -92,13 +93,16 @@ std::vector<SurfaceAnchor> telling_points(const PatchGrid& grid, std::size_t cou
     return points;
 }
 
-double gain_on_patches(const Screen& screen, const Pose& camera_from_object, std::size_t count) {
+double gain_on_patches(const Screen& screen, const Pose& camera_from_object, std::size_t count, double tolerance_m) {
     constexpr float kSameSide = 0.7F;  // cosine between the normals of what may be one surface
     constexpr float kAlongRay = 4.0F;  // tolerances: the patch's plane holds no farther
+    // As in the pixel cost, but a guess is still off by more than a pose that was refined.
+    constexpr float kDeepDiameters = 0.05F, kDeepCost = 3.0F;
+    const float deep_m = kDeepDiameters * static_cast<float>(screen.diameter_m);
     const Eigen::Matrix3f rotation = camera_from_object.rotation_matrix().cast<float>();
     const Eigen::Vector3f translation = camera_from_object.translation.cast<float>();
     const PinholeCamera& camera = screen.camera;
-    const auto tolerance = static_cast<float>(screen.tolerance_m);
+    const auto tolerance = static_cast<float>(tolerance_m);
     const auto fx = static_cast<float>(camera.fx), fy = static_cast<float>(camera.fy);
     const auto cx = static_cast<float>(camera.cx), cy = static_cast<float>(camera.cy);
     const float stride = static_cast<float>(screen.patches.stride);
@@ -121,41 +125,41 @@ double gain_on_patches(const Screen& screen, const Pose& camera_from_object, std
         if (!plane.isZero() && std::abs(plane.dot(off)) < tolerance && std::abs(off.z()) < kAlongRay * tolerance)
             gain += plane.dot(normal) > kSameSide ? cosine * static_cast<float>(patch.weight) : 0.0F;
         else if (off.z() < -tolerance)
-            gain -= cosine;
+            gain -= cosine * (1.0F + (kDeepCost - 1.0F) * std::clamp(-off.z() / deep_m - 1.0F, 0.0F, 1.0F));
     }
     return gain;
 }
 
 // Most guesses are wrong everywhere, which a few points tell.
 Guess glanced_at(const Screen& screen, const Pose& pose) {
-    if (share_on_surface(screen.surface, pose, screen.measured, kFirst, screen.tolerance_m) == 0.0 &&
-        gain_on_patches(screen, pose, kFirstModel) <= 0.0)
+    const double rough_m = kRough * screen.tolerance_m;
+    if (share_on_surface(screen.surface, pose, screen.measured, kFirst, rough_m) == 0.0 &&
+        gain_on_patches(screen, pose, kFirstModel, rough_m) <= 0.0)
         return {};
-    return {pose, share_on_surface(screen.surface, pose, screen.measured, kGlance, screen.tolerance_m),
-            gain_on_patches(screen, pose, kGlanceModel)};
+    return {pose, share_on_surface(screen.surface, pose, screen.measured, kGlance, rough_m),
+            gain_on_patches(screen, pose, kGlanceModel, rough_m)};
 }
 
 std::vector<Pose> screened(std::vector<Guess> guesses, const Screen& screen, int count) {
     constexpr std::size_t kGlancedAt = 4000, kPulledABit = 1500, kPulled = 300;  // guesses
-    constexpr std::size_t kFewPoints = 64, kSomePoints = 128;
-    constexpr int kFewRounds = 2, kRounds = 4;
+    constexpr std::size_t kSomePoints = 128;
+    constexpr int kFewRounds = 3, kRounds = 4;
     constexpr double kFine = 0.5;  // of the tolerance, once pulled
-    const auto look = [&](std::size_t pulled_by, int rounds, std::size_t points, double tolerance_m) {
+    const auto look = [&](int rounds, std::size_t points, double tolerance_m) {
         parallel_for(static_cast<int>(guesses.size()), screen.num_threads, [&](int i) {
             Pose& pose = guesses[i].camera_from_object;
             if (rounds > 0)
-                pose =
-                    pulled_onto_surface(screen.surface, pose, screen.measured, pulled_by, rounds, screen.tolerance_m);
+                pose = pulled_onto_surface(screen.surface, pose, screen.measured, rounds, screen.tolerance_m);
             guesses[i].share = share_on_surface(screen.surface, pose, screen.measured, points, tolerance_m);
-            guesses[i].gain = gain_on_patches(screen, pose, screen.model.size());
+            guesses[i].gain = gain_on_patches(screen, pose, screen.model.size(), tolerance_m);
         });
     };
     guesses = best_of(guesses, kGlancedAt, false, screen);
-    look(0, 0, kSomePoints, screen.tolerance_m);
+    look(0, kSomePoints, kRough * screen.tolerance_m);
     guesses = best_of(guesses, kPulledABit, true, screen);
-    look(kFewPoints, kFewRounds, kSomePoints, screen.tolerance_m);
+    look(kFewRounds, kSomePoints, screen.tolerance_m);
     guesses = best_of(guesses, kPulled, true, screen);
-    look(screen.measured.size(), kRounds, screen.measured.size(), kFine * screen.tolerance_m);
+    look(kRounds, screen.measured.size(), kFine * screen.tolerance_m);
     std::vector<Pose> poses;
     for (const Guess& guess : best_of(guesses, static_cast<std::size_t>(count), true, screen))
         poses.push_back(guess.camera_from_object);

@@ -103,8 +103,7 @@ double share_on_surface(const SurfaceField& field, const Pose& camera_from_objec
 }
 
 Pose pulled_onto_surface(const SurfaceField& field, const Pose& camera_from_object,
-                         const std::vector<SurfaceAnchor>& measured, std::size_t count, int rounds,
-                         double tolerance_m) {
+                         const std::vector<SurfaceAnchor>& measured, int rounds, double tolerance_m) {
     constexpr float kAlike = 0.5F;                 // cosine: while the pose is still off
     constexpr double kDamping = 1.0;               // points
     const double scale_m = 4.0 * field.reach_m();  // lengths in it weigh as turns
@@ -118,9 +117,7 @@ Pose pulled_onto_surface(const SurfaceField& field, const Pose& camera_from_obje
         const auto gate = static_cast<float>(gate_m);
         Eigen::Matrix<float, 6, 6> A = static_cast<float>(kDamping) * Eigen::Matrix<float, 6, 6>::Identity();
         Eigen::Matrix<float, 6, 1> b = Eigen::Matrix<float, 6, 1>::Zero();
-        const std::size_t end = std::min(count, measured.size());
-        for (std::size_t k = 0; k < end; ++k) {
-            const SurfaceAnchor& anchor = measured[k];
+        for (const SurfaceAnchor& anchor : measured) {
             const Eigen::Vector3f point = rotation * anchor.point_in_object + translation;
             const SurfaceAnchor* surface = field.nearest(point);
             if (surface == nullptr) continue;

@@ -47,9 +47,8 @@ class SurfaceField {
 double share_on_surface(const SurfaceField& field, const Pose& camera_from_object,
                         const std::vector<SurfaceAnchor>& measured, std::size_t count, double tolerance_m);
 
-// camera_from_object after `rounds` point-to-plane steps that pull the first `count` measured points onto the model's
-// surface.
+// camera_from_object after `rounds` point-to-plane steps that pull the measured points onto the model's surface.
 Pose pulled_onto_surface(const SurfaceField& field, const Pose& camera_from_object,
-                         const std::vector<SurfaceAnchor>& measured, std::size_t count, int rounds, double tolerance_m);
+                         const std::vector<SurfaceAnchor>& measured, int rounds, double tolerance_m);
 
 }  // namespace nearpose

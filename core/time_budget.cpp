@@ -7,7 +7,7 @@ namespace nearpose {
 namespace {
 
 // What an update must always be left time for.
-constexpr std::array<int, 5> kLeastUnits = {0, 8, 0, 1, 1};
+constexpr std::array<int, 6> kLeastUnits = {0, 8, 0, 0, 1, 1};
 
 }  // namespace
 

@@ -9,6 +9,7 @@ namespace nearpose {
 enum class Stage {
     kSearch,     // candidates of a start
     kParticles,  // moved
+    kShortlist,  // looked at
     kRivals,     // tried
     kModes,      // refined
     kFit,        // one, with the verdict
@@ -27,11 +28,11 @@ class TimeBudget {
     void took(Stage stage, int count, double seconds);
 
   private:
-    static constexpr std::size_t kStages = 5;
+    static constexpr std::size_t kStages = 6;
 
     double budget_s_;
     // [s], before anything is known: of a machine ten times as slow as usual ones.
-    std::array<double, kStages> unit_s_ = {2e-3, 5e-4, 5e-4, 5e-3, 1e-2};
+    std::array<double, kStages> unit_s_ = {2e-3, 5e-4, 1e-3, 5e-4, 5e-3, 1e-2};
 };
 
 }  // namespace nearpose

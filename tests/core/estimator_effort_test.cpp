@@ -8,12 +8,32 @@
 #include <optional>
 #include <vector>
 
+#include "core/random.hpp"
 #include "tests/core/estimator_scene.hpp"
 
 namespace nearpose {
 namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace)
+
+// What is measured within the outermost pixels of the part's box on one side: left, right, top or bottom.
+DepthImage strip_of(DepthImage image, const Mask& mask, int side) {
+    constexpr int kWide = 10;  // pixels
+    int first_u = mask.width, last_u = 0, first_v = mask.height, last_v = 0;
+    for (int pixel = 0; pixel < mask.width * mask.height; ++pixel) {
+        if (mask.value[pixel] == 0) continue;
+        first_u = std::min(first_u, pixel % mask.width);
+        last_u = std::max(last_u, pixel % mask.width);
+        first_v = std::min(first_v, pixel / mask.width);
+        last_v = std::max(last_v, pixel / mask.width);
+    }
+    for (int pixel = 0; pixel < mask.width * mask.height; ++pixel) {
+        const int u = pixel % mask.width, v = pixel / mask.width;
+        const int inwards[] = {u - first_u, last_u - u, v - first_v, last_v - v};
+        if (inwards[side] >= kWide) image.depth_m[pixel] = 0.0F;
+    }
+    return image;
+}
 
 TEST(Estimator, NothingSeenYetIsNoPoseAndLaterThePredictionStandsIn) {
     PoseEstimator estimator(kPart, kSolver, small_options(method_default(), 0));
@@ -195,6 +215,26 @@ TEST(Estimator, LittleThatIsSeenDoesNotOverturnWhatWasAcceptedAndAllOfItDoes) {
         const Pose expected = whole ? moved : truth_at(0);
         EXPECT_LT((result.camera_from_object * centre - expected * centre).norm(), 0.003) << whole;
         EXPECT_LT(angle_between(result.camera_from_object.rotation, expected.rotation), 0.05) << whole;
+    }
+}
+
+TEST(Estimator, AStripInViewDoesNotPullThePoseOffWhatTheArmForetold) {
+    // Of an accepted part nothing but a noisy strip along one of its sides is measured any more: too little for a fit,
+    // which would slide along it.
+    Mask mask;
+    const DepthImage all = render(*kPart, truth_at(0), kCamera, 0.9F, &mask);
+    for (const int side : {0, 1, 2, 3}) {
+        PoseEstimator estimator(kPart, kSolver, small_options(method_default(), 0));
+        for (int frame = 0; frame < 6; ++frame)
+            EXPECT_EQ(estimator.update(observe_at(0), Pose::identity()).verdict, Verdict::kAccept) << frame;
+        for (int frame = 0; frame < 8; ++frame) {
+            DepthImage strip = strip_of(all, mask, side);
+            RandomStream random(7, frame, side, RandomPurpose::kStart);
+            for (float& depth_m : strip.depth_m) depth_m *= static_cast<float>(1.0 + 0.006 * random.gaussian());
+            const Observation observation = make_observation(strip, kCamera, std::nullopt);
+            const UpdateResult result = estimator.update(observation, Pose::identity());
+            EXPECT_LT(error_m(result, 0), 0.001) << "side " << side << ", frame " << frame;
+        }
     }
 }
 

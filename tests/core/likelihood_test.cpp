@@ -120,6 +120,49 @@ TEST(PixelCost, TurnedByHalfATurnIsWorse) {
     }
 }
 
+TEST(PixelCost, WithoutAMaskModelDeepBeforeWhatIsMeasuredCostsMore) {
+    const Observation open = observe_part(false), segmented = observe_part(true);
+    const Pose beside = shifted(0.2, 0, 0);  // before the wall, which is 0.35 to 0.44 m behind
+    PixelCostOptions options;
+    const PixelCost shallow = cost_at(beside, open, options);
+    ASSERT_GT(shallow.model_in_front, 100);
+    const auto more_than_shallow = [&](double deep_m) {
+        options.deep_m = deep_m;
+        const PixelCost cost = cost_at(beside, open, options);
+        EXPECT_EQ(cost.model_in_front, shallow.model_in_front);
+        return cost.cost * cost.judged - shallow.cost * shallow.judged;
+    };
+    const double all = (options.deep_cost - 1.0) * shallow.model_in_front;
+    EXPECT_NEAR(more_than_shallow(0.45), 0.0, 1e-9) << "none is so deep";
+    EXPECT_NEAR(more_than_shallow(0.05), all, 0.02 * all) << "nearly all are twice as deep";
+    const double some = more_than_shallow(0.25);  // by 0.4 to 0.76 of it
+    EXPECT_GT(some, 0.4 * all);
+    EXPECT_LT(some, 0.76 * all);
+    EXPECT_EQ(cost_at(beside, segmented, options).cost, cost_at(beside, segmented).cost) << "the mask tells";
+}
+
+// A plate before most of the part, as a gripper's palm: of all poses in which a face lies in the plate none explains as
+// much as the truth, since what reaches beyond the plate would hide what is seen there.
+TEST(PixelCost, APartBehindAPlateExplainsMoreThanOneLaidIntoThePlate) {
+    constexpr float kPlate_m = 0.30F;
+    DepthImage image = test::render(kPart, kTruth, kCamera, 0.8F, nullptr);
+    for (int v = 20; v < 100; ++v)
+        for (int u = 10; u < 84; ++u) image.depth_m[static_cast<std::size_t>(v) * image.width + u] = kPlate_m;
+    const Observation observation = make_observation(image, kCamera, std::nullopt);
+    PixelCostOptions options;
+    const auto best_on_plate = [&] {
+        double best = 0.0;
+        for (const double front_m : {0.36, 0.40, 0.42})  // of the towers and of the base
+            for (double x = -0.1; x < 0.1; x += 0.01)
+                for (double y = -0.06; y < 0.07; y += 0.02)
+                    best = std::max(best, cost_at(shifted(x, y, kPlate_m - front_m), observation, options).gain);
+        return best;
+    };
+    EXPECT_GT(best_on_plate(), cost_at(kTruth, observation, options).gain) << "or the plate is no trap";
+    options.deep_m = 0.05 * kPart.extent().diameter_m();
+    EXPECT_LT(best_on_plate(), cost_at(kTruth, observation, options).gain);
+}
+
 // However large it is.
 TEST(PixelCost, AFaceLaidIntoALargerPlaneExplainsNothing) {
     constexpr float kWall_m = 0.3F;

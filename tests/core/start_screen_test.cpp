@@ -22,14 +22,14 @@ TEST(GainOnPatches, PositiveAtTheTruthAndNegativeInFreeSpace) {
     const Screen screen{pairs.surface(),    patches, kCamera, telling_points(patches, 256), pairs.anchors(), 0.01,
                         pairs.diameter_m(), 1};
     const std::size_t all = pairs.anchors().size();
-    EXPECT_GT(gain_on_patches(screen, kTruth, all), 0.0);
+    EXPECT_GT(gain_on_patches(screen, kTruth, all, screen.tolerance_m), 0.0);
     Pose beside = kTruth;
     beside.translation.x() -= 1.5 * pairs.diameter_m() * 0.5;
     beside.translation.z() -= 0.1;
-    EXPECT_LT(gain_on_patches(screen, beside, all), 0.0);
+    EXPECT_LT(gain_on_patches(screen, beside, all, screen.tolerance_m), 0.0);
     Pose behind_camera = kTruth;
     behind_camera.translation.z() = -1.0;
-    EXPECT_EQ(gain_on_patches(screen, behind_camera, all), 0.0);
+    EXPECT_EQ(gain_on_patches(screen, behind_camera, all, screen.tolerance_m), 0.0);
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ TEST(PulledOntoSurface, ComesBackFromANearbyPose) {
     Twist off;
     off << 0.06, -0.05, 0.06, 0.005, -0.004, 0.005;
     const Pose start = perturb_about(kTruth, off, centre);
-    const Pose pulled = pulled_onto_surface(field(), start, points, points.size(), 4, kTolerance_m);
+    const Pose pulled = pulled_onto_surface(field(), start, points, 4, kTolerance_m);
     EXPECT_LT((pulled * centre - kTruth * centre).norm(), 0.002);
     EXPECT_LT(angle_between(pulled.rotation, kTruth.rotation), 0.02);
 }
@@ -65,7 +65,7 @@ TEST(PulledOntoSurface, ComesBackFromANearbyPose) {
 TEST(PulledOntoSurface, StaysWhereNothingIsNear) {
     Pose away = kTruth;
     away.translation.z() += 1.0;
-    const Pose pulled = pulled_onto_surface(field(), away, measured(), measured().size(), 4, kTolerance_m);
+    const Pose pulled = pulled_onto_surface(field(), away, measured(), 4, kTolerance_m);
     EXPECT_LT((pulled.translation - away.translation).norm(), 1e-9);
 }
 
