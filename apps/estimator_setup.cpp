@@ -28,8 +28,8 @@ const std::vector<std::string>& residual_names() {
 }
 
 const std::vector<std::string>& parts_of_method() {
-    static const std::vector<std::string> names = {"nothing", "fine_fit",   "outline", "pairs",
-                                                   "rivals",  "confidence", "doubts",  "economy"};
+    static const std::vector<std::string> names = {"nothing",   "fine_fit", "outline",    "depths", "pairs",
+                                                   "shortlist", "rivals",   "confidence", "doubts", "economy"};
     return names;
 }
 
@@ -55,11 +55,14 @@ void leave_out(const std::string& part, Method& method) {
     const auto& parts = parts_of_method();
     if (std::find(parts.begin(), parts.end(), part) == parts.end())
         throw std::invalid_argument("without '" + part +
-                                    "': take nothing, fine_fit, outline, pairs, rivals, confidence, doubts or economy");
+                                    "': take nothing, fine_fit, outline, depths, pairs, shortlist, rivals, confidence, "
+                                    "doubts or economy");
     if (part != "nothing" && method.refinement.modes == 0)
         throw std::invalid_argument("without " + part + ": only the default method has it");
     if (part == "fine_fit") method.refinement.fusion = false;
     if (part == "outline") method.refinement.outline = false;
+    if (part == "depths") method.deep_diameters = 0.0;
+    if (part == "shortlist") method.refinement.shortlist = 0;
     if (part == "pairs") method.start = Start::kSurface;
     if (part == "rivals") method.refinement.rivals = 0;
     if (part == "confidence") method.refinement.confidence = false;

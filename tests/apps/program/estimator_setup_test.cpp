@@ -34,6 +34,8 @@ TEST(EstimatorSetup, LeavesOneNamedPartOut) {
     EXPECT_GT(whole.refinement.rivals, 0);
     EXPECT_FALSE(without("fine_fit").refinement.fusion);
     EXPECT_FALSE(without("outline").refinement.outline);
+    EXPECT_EQ(without("depths").deep_diameters, 0.0);
+    EXPECT_EQ(without("shortlist").refinement.shortlist, 0);
     EXPECT_EQ(without("pairs").start, Start::kSurface);
     EXPECT_EQ(without("rivals").refinement.rivals, 0);
     EXPECT_FALSE(without("confidence").refinement.confidence);
