@@ -19,6 +19,13 @@ Mode mode_of(const MovedParticle& refined) {
     return {refined.camera_from_object, refined.cost, refined.support, refined.log_evidence};
 }
 
+// Noise is averaged over rays: so many more of them as it is larger than the sensor's least.
+int fit_rays(const Method& method, const Observation& observation) {
+    const double noise = observation.sigma_m(observation.mean_distance_m()) / observation.sensor().sigma_floor_m;
+    return static_cast<int>(
+        std::min<double>(method.refinement.max_rays, method.economy.fit_rays * std::max(1.0, noise)));
+}
+
 bool less_evident(const Mode& a, const Mode& b) {
     return a.log_evidence < b.log_evidence;
 }
@@ -146,7 +153,7 @@ bool PoseEstimator::tells_as_much(const Pose& fitted, const StepContext& context
 // other the object was moved, unless the image says less than before or less for the fit: then the prediction stands.
 void PoseEstimator::correct_tracked(const Mode& chosen, bool replaced, const Observation& observation) {
     const Method& method = options_.method;
-    const int rays = effort_ == Effort::kKeeping ? method.economy.fit_rays : method.refinement.max_rays;
+    const int rays = effort_ == Effort::kKeeping ? fit_rays(method, observation) : method.refinement.max_rays;
     const StepContext context = fine_context(grid_to_fit(chosen.camera_from_object, observation, rays), observation);
     const FineFit fit = fit_finely(chosen.camera_from_object, context);
     const Eigen::Vector3d centre = views_->extent().centre_in_object();

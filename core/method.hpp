@@ -63,7 +63,7 @@ struct Economy {
     int rounds = 2;       // of refinement
     int confirming_rays = 2000;  // of a refined view, until one mode holds
     int confirming_rounds = 3;   // of refinement, until then
-    int fit_rays = 3000;         // of the fine fit's view
+    int fit_rays = 2500;         // of the fine fit's view where the noise is the sensor's least; more where it is more
     int rivals = 32;
 };
 
