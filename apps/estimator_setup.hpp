@@ -25,11 +25,11 @@ const std::vector<std::string>& residual_names();
 
 // "nothing"; "fine_fit": the chosen mode as it was refined, without the sensor's errors and the track; "outline": a
 // face laid into a larger one counts as found; "depths": model far before what is measured costs no more than model
-// just before it; "pairs": starts on single points of the surface and around the centroid; "shortlist": a search
-// refines the first of its starts, not the best of many that were refined a little; "rivals": no other modes than the
-// swarm's are tried; "confidence": an accepted pose yields to any better one, and its prediction is not fitted at once;
-// "doubts": only what contradicts the image is searched for anew; "economy": as many particles and rays in every frame
-// as at the start.
+// just before it, but where guesses are screened; "pairs": starts on single points of the surface and around the
+// centroid; "shortlist": a search refines the first of its starts, not the best of many that were refined a little;
+// "rivals": no other modes than the swarm's are tried; "confidence": an accepted pose yields to any better one, and its
+// prediction is not fitted at once; "doubts": only what contradicts the image is searched for anew; "economy": as many
+// particles and rays in every frame as at the start.
 const std::vector<std::string>& parts_of_method();
 
 struct EstimatorSetup {

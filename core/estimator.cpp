@@ -241,7 +241,7 @@ bool PoseEstimator::take_map(const Observation& observation, UpdateResult& resul
     const int best = map_index(particles_.weights);
     tracked_ = Mode{particles_.poses[best], last_costs_[best], 0.0};
     const double sigma_m = observation.sensor().sigma_m(observation.mean_distance_m());
-    result.score = options_.method.cost == Cost::kPixels ? 1.0 - tracked_->cost
+    result.score = options_.method.cost == Cost::kPixels ? std::clamp(1.0 - tracked_->cost, 0.0, 1.0)
                                                          : 1.0 / (1.0 + tracked_->cost / (sigma_m * sigma_m));
     return true;
 }
@@ -316,10 +316,12 @@ void PoseEstimator::describe_estimate(const Observation& observation, UpdateResu
     constexpr double kOneMetre = 1.0;
     result.observability = observability_of(estimated ? observed_ : Matrix6d(kOneMetre * Matrix6d::Identity()),
                                             0.5 * extent.diameter_m(), options_.tolerance.translation_m);
-    for (Mode& mode : result.modes) {
-        const bool alone = result.modes.size() == 1 && estimated;  // then it was fitted
+    const int num_modes = static_cast<int>(result.modes.size());
+    const bool alone = num_modes == 1 && estimated;  // then it was fitted
+    parallel_for(num_modes, options_.num_threads, [&](int k) {
+        Mode& mode = result.modes[k];
         mode.covariance = about_origin(alone ? observed_ : covariance_at(mode.camera_from_object, context), centre);
-    }
+    });
     Evidence evidence;
     evidence.seen = estimated;
     evidence.pixels = refined_cost(tracked_->camera_from_object, context, refinement_now());

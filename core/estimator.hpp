@@ -67,7 +67,7 @@ struct UpdateResult {
     UpdateStatus status = UpdateStatus::kNoPose;
     Pose camera_from_object;                 // the MAP; meaningless where there is no pose
     Matrix6d covariance = Matrix6d::Zero();  // of the twist of camera_from_object * exp(twist), rotation first
-    double cost = 0.0;                       // of the MAP: the pixel cost in 0..1, or epsilon [m^2]
+    double cost = 0.0;                       // of the MAP: PixelCost::cost, or epsilon [m^2]
     double score = 0.0;                      // larger is better: 1 - pixel cost, or 1 / (1 + epsilon / sigma^2)
     Verdict verdict = Verdict::kContinue;    // may the pose be acted on?
     std::vector<Mode> modes;                 // refined, best first; the default method's

@@ -19,7 +19,8 @@ Mode mode_of(const MovedParticle& refined) {
     return {refined.camera_from_object, refined.cost, refined.support, refined.log_evidence};
 }
 
-// Noise is averaged over rays: so many more of them as it is larger than the sensor's least.
+// Noise is averaged over rays: so many more of them as it is larger, at the distance of what is seen, than the sensor's
+// at contact.
 int fit_rays(const Method& method, const Observation& observation) {
     const double noise = observation.sigma_m(observation.mean_distance_m()) / observation.sensor().sigma_floor_m;
     return static_cast<int>(
@@ -43,8 +44,8 @@ bool PoseEstimator::take_refined_mode(const Observation& observation, UpdateResu
     modes.resize(count);
     std::vector<Mode> refined = refine_all(modes, observation, result);
     if (confidence_ > 0.0 && !searching_) {  // where little is in view, refinement may slide off what was accepted
-        const MovedParticle unmoved = foretold_ ? *foretold_ : tracked_unmoved(observation);
-        if (unmoved.log_evidence > refined.front().log_evidence) refined.front() = mode_of(unmoved);
+        const MovedParticle prediction = foretold_ ? *foretold_ : tracked_unmoved(observation);
+        if (prediction.log_evidence > refined.front().log_evidence) refined.front() = mode_of(prediction);
     }
     const Eigen::Vector3d centre = views_->extent().centre_in_object();
     result.modes = distinct_modes(refined, static_cast<int>(refined.size()), centre, mode_distance());
@@ -181,8 +182,11 @@ std::vector<Mode> PoseEstimator::modes_to_refine(const Observation& observation,
     const bool twice =
         effort_ != Effort::kWhole && !leaders.empty() &&
         same_mode(leaders.front().camera_from_object, tracked_->camera_from_object, centre, mode_distance());
-    if (twice && foretold_) leaders.erase(leaders.begin());
-    if (tracked_ && (foretold_ || !twice)) modes.push_back(*tracked_);
+    if (twice && !foretold_)
+        modes.push_back(leaders.front());
+    else if (tracked_)
+        modes.push_back(*tracked_);
+    if (twice) leaders.erase(leaders.begin());
     if (before_loss_) modes.push_back({*before_loss_, 1.0, 0.0});  // it may only have been hidden for a while
     modes.insert(modes.end(), leaders.begin(), leaders.end());
     if (refinement.shortlist == 0)
@@ -213,7 +217,7 @@ std::vector<Mode> PoseEstimator::shortlisted(const std::vector<Mode>& swarm, con
         if (k < distinct.size()) modes.push_back(distinct[k]);
         if (k < screened_.size()) modes.push_back({screened_[k], 1.0, 0.0});
     }
-    const int count = affordable(Stage::kShortlist, static_cast<int>(modes.size()), kKept, result);
+    const int count = affordable(Stage::kShortlist, static_cast<int>(modes.size()), 1, result);
     modes.resize(count);
     std::vector<MovedParticle> moved(modes.size());
     parallel_for(count, options_.num_threads, [&](int k) {

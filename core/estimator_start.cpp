@@ -36,7 +36,7 @@ ParticleSet PoseEstimator::start_where_surfaces_meet(const Observation& observat
         // Where nothing is segmented most draws miss the object.
         constexpr int kDrawsUnsegmented = 6;
         constexpr int kRefined = 8;
-        const int kept = std::max(kRefined, method.refinement.shortlist);
+        const int kept = method.refinement.shortlist > 0 ? method.refinement.shortlist : kRefined;
         const bool segmented = observation.segmented();
         const PairStartOptions start{(segmented ? 1 : kDrawsUnsegmented) * draws, segmented ? count / 2 : 2 * count / 3,
                                      static_cast<std::uint64_t>(count), options_.num_threads};

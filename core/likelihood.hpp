@@ -68,7 +68,8 @@ struct PixelCost {
 //   candidate pixel: min(r^2 / truncation^2, 1); no model there: 1
 //   background pixel: model in front of it: 1; behind it or on it: occluded_cost
 // and where it is not, model behind something is no better than no model, which costs `unexplained_cost`, and model in
-// front of something costs 1 up to deep_m and then more, up to deep_cost at twice that depth: a wrong pose among other
+// front of something (by more than the truncation) costs 1 up to deep_m and then more, up to deep_cost at twice that
+// depth: a wrong pose among other
 // things may agree with much, but the sensor looks through it by far. Pixels without depth say nothing, and what a
 // pixel says for the model counts with its weight. A face of the model laid into a larger flat one agrees with it
 // everywhere but is no object: a ray of it at the outline counts as `outline_cost`, not as agreeing, and of what the

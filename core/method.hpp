@@ -38,7 +38,7 @@ struct Refinement {
     int rival_period = 10;        // frames between such trials once one mode holds
     int rival_modes = 3;          // of them that are refined
     int shortlist = 24;  // of a search where nothing is segmented: so many of the swarm's modes and of the starts
-                         // are looked at with few rays before the best are refined; 0: the first are
+                         // are looked at with few rays, and the best 8 are refined; 0: the first
     double min_support = 0.25;  // share of a mode's rays that agree with the depth; less shows nothing of the object
     bool confidence = true;     // what was accepted yields to as much evidence as it was accepted for, and not to less
     bool doubts = true;         // an estimate that does not convince is searched for anew, as one that is contradicted

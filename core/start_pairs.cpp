@@ -20,7 +20,7 @@ constexpr int kMaxPairAnchors = 1000;  // their pairs are a million
 // of the cells: a look-up instead of an arc cosine.
 class AngleCells {
   public:
-    AngleCells() noexcept {
+    AngleCells() {
         for (int cell = 0; cell < kAngleCells; ++cell)
             smallest_cosine_[cell] = static_cast<float>(std::cos(M_PI * (cell + 1) / kAngleCells));
         for (int bin = 0, cell = kAngleCells - 1; bin < kBins; ++bin) {
@@ -42,7 +42,10 @@ class AngleCells {
     std::array<int, kBins> cell_at_largest_{};  // of a bin's largest cosine
 };
 
-const AngleCells angle_cell;
+int angle_cell(float cosine) {
+    static const AngleCells kCells;
+    return kCells(cosine);
+}
 
 // Right-handed axes of an oriented pair: the first normal, the line between the points made square to it, and the
 // third. Nothing where the line runs along the normal.

@@ -16,7 +16,7 @@ namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace)
 
-// What is measured within the outermost pixels of the part's box on one side: left, right, top or bottom.
+// Only what is measured within the outermost pixels of the part's box on one side: left, right, top or bottom.
 DepthImage strip_of(DepthImage image, const Mask& mask, int side) {
     constexpr int kWide = 10;  // pixels
     int first_u = mask.width, last_u = 0, first_v = mask.height, last_v = 0;
@@ -30,7 +30,7 @@ DepthImage strip_of(DepthImage image, const Mask& mask, int side) {
     for (int pixel = 0; pixel < mask.width * mask.height; ++pixel) {
         const int u = pixel % mask.width, v = pixel / mask.width;
         const int inwards[] = {u - first_u, last_u - u, v - first_v, last_v - v};
-        if (inwards[side] >= kWide) image.depth_m[pixel] = 0.0F;
+        if (inwards[side] < 0 || inwards[side] >= kWide) image.depth_m[pixel] = 0.0F;
     }
     return image;
 }
@@ -233,6 +233,7 @@ TEST(Estimator, AStripInViewDoesNotPullThePoseOffWhatTheArmForetold) {
             for (float& depth_m : strip.depth_m) depth_m *= static_cast<float>(1.0 + 0.006 * random.gaussian());
             const Observation observation = make_observation(strip, kCamera, std::nullopt);
             const UpdateResult result = estimator.update(observation, Pose::identity());
+            EXPECT_EQ(result.status, UpdateStatus::kEstimated) << "side " << side << ", frame " << frame;
             EXPECT_LT(error_m(result, 0), 0.001) << "side " << side << ", frame " << frame;
         }
     }

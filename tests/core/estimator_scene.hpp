@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "core/estimator.hpp"
@@ -33,6 +34,10 @@ inline Observation observe_at(int frame) {
     Mask mask;
     const DepthImage image = render(*kPart, truth_at(frame), kCamera, 0.9F, &mask);
     return make_observation(image, kCamera, mask);
+}
+
+inline Observation observe_without_mask(int frame) {
+    return make_observation(render(*kPart, truth_at(frame), kCamera, 0.9F, nullptr), kCamera, std::nullopt);
 }
 
 inline Observation observe_nothing() {

@@ -33,8 +33,11 @@ TEST(Estimator, TheSameBitsForAnyNumberOfThreads) {
         for (const int threads : {1, 2, 3}) {
             PoseEstimator estimator(kPart, kSolver, small_options(method, threads));
             std::vector<double> numbers;
-            for (int frame = 0; frame < 3; ++frame) {
-                const UpdateResult result = estimator.update(observe_at(frame), {});
+            for (int frame = 0; frame < 4; ++frame) {
+                // In the last one the part is searched for everywhere.
+                if (frame == 3) estimator.reset();
+                const UpdateResult result =
+                    estimator.update(frame == 3 ? observe_without_mask(frame) : observe_at(frame), {});
                 const auto& pose = result.camera_from_object;
                 numbers.insert(numbers.end(), pose.rotation.coeffs().data(), pose.rotation.coeffs().data() + 4);
                 numbers.insert(numbers.end(), pose.translation.data(), pose.translation.data() + 3);

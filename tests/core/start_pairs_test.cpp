@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "tests/core/analytic_part.hpp"
@@ -33,6 +34,16 @@ std::vector<Pose> starts(const Observation& observation, const AnchorPairs& pair
     return start_on_pairs(observation, pairs, patches, {20000, 200, 0, threads}, 1, 1);
 }
 
+constexpr double kAngleCell = M_PI / 18.0;  // of the table
+
+// Between either normal and the line, and between the normals [rad].
+std::array<double, 3> angles_of(const SurfaceAnchor& first, const SurfaceAnchor& second) {
+    const Eigen::Vector3f line = (second.point_in_object - first.point_in_object).normalized();
+    const auto angle = [](float cosine) { return std::acos(std::clamp(static_cast<double>(cosine), -1.0, 1.0)); };
+    return {angle(first.normal_in_object.dot(line)), angle(second.normal_in_object.dot(line)),
+            angle(first.normal_in_object.dot(second.normal_in_object))};
+}
+
 TEST(AnchorPairs, APairOfTheModelIsAlikeItself) {
     const AnchorPairs pairs(kPart);
     const auto& anchors = pairs.anchors();
@@ -49,6 +60,13 @@ TEST(AnchorPairs, APairOfTheModelIsAlikeItself) {
                 const double other =
                     (anchors[pair.first].point_in_object - anchors[pair.second].point_in_object).norm();
                 EXPECT_NEAR(other, distance, 0.06 * pairs.diameter_m()) << "one cell of distances";
+                const auto angles = angles_of(anchors[i], anchors[j]);
+                const auto others = angles_of(anchors[pair.first], anchors[pair.second]);
+                for (int k = 0; k < 3; ++k) {
+                    const double cell = std::floor(angles[k] / kAngleCell);
+                    EXPECT_GT(others[k], cell * kAngleCell - 1e-3) << "one cell of each angle";
+                    EXPECT_LT(others[k], (cell + 1.0) * kAngleCell + 1e-3);
+                }
             }
         }
     }
