@@ -31,9 +31,9 @@ struct Screen {
 std::vector<SurfaceAnchor> telling_points(const PatchGrid& patches, std::size_t count);
 
 // How many more of the model's points (the first `count`) that face the camera lie within the tolerance of the measured
-// surface than lie before it, where
-// the sensor looked through them; each counts with the cosine of its slope and, where it agrees, with the weight of the
-// patch. Those deep before it count up to three times, those behind something say nothing: they may be hidden.
+// surface than lie before it, where the sensor looked through them; each counts with the cosine of its slope and, where
+// it agrees, with the weight of the patch. Those deep before it count up to three times, those behind something say
+// nothing: they may be hidden.
 double gain_on_patches(const Screen& screen, const Pose& camera_from_object, std::size_t count, double tolerance_m);
 
 // A first look, which costs a microsecond.
