@@ -181,6 +181,12 @@ double log_evidence(const PixelCost& cost, const PixelCostOptions& options, doub
     return -0.5 * options.truncation_sigmas * options.truncation_sigmas * cost.cost * cost.judged / rays_per_evidence;
 }
 
+double log_evidence_over_nothing(const PixelCost& cost, const PixelCostOptions& options, double rays_per_evidence) {
+    PixelCost nothing = cost;
+    nothing.cost = 1.0;
+    return log_evidence(cost, options, rays_per_evidence) - log_evidence(nothing, options, rays_per_evidence);
+}
+
 double negative_log_likelihood(const PixelCost& cost, const PixelCostOptions& options) {
     return 0.5 * options.independent_rays * options.truncation_sigmas * options.truncation_sigmas * cost.cost;
 }

@@ -83,6 +83,9 @@ PixelCost pixel_cost(const View& view, const Pose& camera_from_object, const Obs
 // rays_per_evidence.
 double log_evidence(const PixelCost& cost, const PixelCostOptions& options, double rays_per_evidence);
 
+// The same against no object at all: every judged pixel costs 1.
+double log_evidence_over_nothing(const PixelCost& cost, const PixelCostOptions& options, double rays_per_evidence);
+
 // Of a pose with that cost: independent_rays * truncation^2 / 2 * cost.
 double negative_log_likelihood(const PixelCost& cost, const PixelCostOptions& options);
 

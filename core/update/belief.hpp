@@ -1,0 +1,24 @@
+// What is carried from one observation to the next.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/modes.hpp"
+#include "core/particles.hpp"
+#include "core/track.hpp"
+#include "core/update/phase.hpp"
+
+namespace nearpose {
+
+// A plain value: it can be copied, kept and put back. A new one knows nothing.
+struct Belief {
+    ParticleSet particles;
+    std::optional<Mode> tracked;           // the estimate of the last update
+    std::optional<Track> track;            // the same with its spread; the default method's
+    std::optional<Pose> pose_before_loss;  // camera_from_object; from a search on until the track is confirmed again
+    Lock lock;                             // how well the tracked pose is established
+    std::uint64_t step = 0;                // updates so far; addresses the random streams
+};
+
+}  // namespace nearpose

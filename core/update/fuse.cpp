@@ -1,0 +1,87 @@
+#include "core/update/fuse.hpp"
+
+#include <algorithm>
+
+#include "core/fine_fit.hpp"
+#include "core/update/ray_grids.hpp"
+
+namespace nearpose {
+namespace {
+
+// Noise is averaged over rays: so many more of them as it is larger, at the distance of what is seen, than the sensor's
+// at contact.
+int fit_rays(const Situation& situation, const Frame& frame) {
+    const Method& method = frame.method();
+    if (situation.phase != Phase::kTracking) return method.refinement.max_rays;
+    const Observation& observation = frame.observation;
+    const double noise = observation.sigma_m(observation.mean_distance_m()) / observation.sensor().sigma_floor_m;
+    return static_cast<int>(
+        std::min<double>(method.refinement.max_rays, method.economy.fit_rays * std::max(1.0, noise)));
+}
+
+// Whether the image speaks for a fit at least as much as for the prediction that it contradicts, and says as much as
+// the image did in which the pose was accepted last.
+bool outweighs_prediction(const Pose& fitted, const Pose& predicted, const StepContext& context, const Lock& lock,
+                          const Situation& situation, const Method& method) {
+    const auto evidence_for = [&](const Pose& pose) {
+        return log_evidence_over_nothing(refined_cost(pose, context, situation.plan.refinement), method.pixel_cost,
+                                         method.refinement.rays_per_evidence);
+    };
+    const int stride = context.observed.grid.stride;
+    const double evidence = evidence_for(fitted);
+    return evidence * stride * stride >= lock.accepted_evidence && evidence >= evidence_for(predicted);
+}
+
+// Where fit and prediction contradict each other the object was moved, unless the image says less than before or less
+// for the fit: then the prediction stands.
+Matrix6d correct(Belief& belief, const Choice& choice, const Situation& situation, const Frame& frame, Ledger& ledger) {
+    const Pose& chosen = choice.mode.camera_from_object;
+    const PixelGrid grid = ray_grid_to_fit(frame, chosen, fit_rays(situation, frame));
+    const StepContext context = frame.context(ledger.measured(grid, frame.observation), frame.method().step);
+    const FineFit fit = fit_finely(chosen, context);
+    const Eigen::Vector3d centre = frame.model.centre_in_object();
+    if (!belief.track || choice.replaces_tracked)
+        belief.track = Track{fit.camera_from_object, fit.covariance, {}, fit.constant_covariance};
+    else if (!contradicts(*belief.track, fit, centre) ||
+             outweighs_prediction(fit.camera_from_object, belief.track->camera_from_object, context, belief.lock,
+                                  situation, frame.method()))
+        belief.track = correct_track(*belief.track, fit, centre);
+    belief.tracked->camera_from_object = belief.track->camera_from_object;
+    return fit.covariance + fit.constant_covariance;
+}
+
+// Share of the probability that modes other than the tracked one have.
+double weight_of_alternatives(const std::vector<Mode>& modes, const Pose& tracked, const ObjectModel& model) {
+    double weight = 0.0;
+    for (const Mode& mode : modes)
+        if (!model.same_mode(mode.camera_from_object, tracked)) weight += mode.weight;
+    return weight;
+}
+
+// The particles learn of the chosen pose in place of their least likely one.
+void replace_least_likely(ParticleSet& particles, const Pose& chosen) {
+    const auto worst = std::max_element(particles.weights.begin(), particles.weights.end());
+    particles.poses[worst - particles.weights.begin()] = chosen;
+    *worst = particles.weights[map_index(particles.weights)];
+}
+
+}  // namespace
+
+void adopt(Belief& belief, const MovedParticles& moved, const Choice& choice) {
+    belief.particles = moved.particles;
+    belief.tracked = choice.mode;
+}
+
+std::optional<Matrix6d> fuse(Belief& belief, const Choice& choice, const Situation& situation, const Frame& frame,
+                             Ledger& ledger) {
+    std::optional<Matrix6d> covariance;
+    if (frame.method().refinement.fusion) covariance = correct(belief, choice, situation, frame, ledger);
+    std::optional<double> alternatives_weight;
+    if (ledger.effort.rivals > 0 && choice.all_refined)
+        alternatives_weight = weight_of_alternatives(choice.modes, belief.tracked->camera_from_object, frame.model);
+    belief.lock = after_choice(belief.lock, choice.replaces_tracked, alternatives_weight);
+    replace_least_likely(belief.particles, choice.mode.camera_from_object);
+    return covariance;
+}
+
+}  // namespace nearpose

@@ -1,0 +1,21 @@
+// The chosen mode's joint fit and the prediction by the arm's motion, brought together.
+#pragma once
+
+#include <optional>
+
+#include "core/update/belief.hpp"
+#include "core/update/choose.hpp"
+#include "core/update/frame.hpp"
+
+namespace nearpose {
+
+// The particles and the tracked mode become those of this frame.
+void adopt(Belief& belief, const MovedParticles& moved, const Choice& choice);
+
+// The default method's: the adopted mode is fitted jointly with the sensor's errors and fused with the track, the
+// lock's record takes the choice, and the particles learn of it. Gives the covariance of the observation's own fit,
+// about the model's centre; nothing where fusion is off.
+std::optional<Matrix6d> fuse(Belief& belief, const Choice& choice, const Situation& situation, const Frame& frame,
+                             Ledger& ledger);
+
+}  // namespace nearpose

@@ -1,0 +1,86 @@
+// In which phase the filter is, and what a frame in that phase is worth.
+//
+//                  agreement too low, or contradicted by the image
+//        +----------------------------------------------------------------+
+//        v                                                                |
+//    searching --> acquiring --> confirming --> tracking -----------------+
+//    (where may     (which mode    (one is        (one mode held for some
+//     it be?)        is right?)     verified)      frames, no alternative left)
+//                       ^             |  ^            |
+//                       +-------------+  +------------+
+//                       no longer verified   the image disagrees with the predicted pose
+//
+// Every frame decides anew from the record of the frames before: no phase is left by force.
+#pragma once
+
+#include "core/method.hpp"
+#include "core/verdict.hpp"
+
+#include <cstdint>
+#include <optional>
+
+namespace nearpose {
+
+enum class Phase {
+    kSearching,   // global localisation, or relocalisation after a loss
+    kAcquiring,   // all particles and alternatives with all rays, until a pose is verified
+    kConfirming,  // a verified pose: all particles and alternatives with fewer rays each
+    kTracking,    // a confirmed track: few particles, few rays, alternatives now and then
+};
+
+const char* to_string(Phase phase);
+
+// The record from which the next frame's phase follows.
+struct Lock {
+    Phase phase = Phase::kSearching;   // of the last frame that showed enough
+    bool verified = false;             // the last estimate passed every test of the verdict but that of its precision
+    bool agrees_too_little = false;    // the last estimate's agreement was too low to be verified
+    bool alternatives_tried = false;   // since the tracked mode was last replaced
+    double alternatives_weight = 0.0;  // their share of the probability when they were last tried, in 0..1
+    int frames_unreplaced = 0;         // in a row, since the tracked mode was last replaced
+    int frames_contradicted = 0;       // in a row whose estimate contradicts what is seen
+    int frames_unverified = 0;         // with too little agreement, since a pose was last accepted
+    // Evidence of the image for the last accepted pose, fading from frame to frame; 0 where the arm's motion is not
+    // known [nats times image pixels a ray].
+    double accepted_evidence = 0.0;
+};
+
+// Whether the object is to be searched for anew although there is a pose: where the image contradicts the pose, and,
+// at first and then now and then, where it agrees too little. A model that is not quite the part never agrees enough.
+bool search_due(const Lock& lock, const Refinement& refinement);
+
+// A confirmed track: not replaced for a while, told from its alternatives by the image, and not contradicted.
+bool confirmed(const Lock& lock, const Refinement& refinement);
+
+// Alternatives are tried in every frame until the track is confirmed, and then in every so many.
+bool alternatives_due(const Lock& lock, const Refinement& refinement, std::uint64_t step);
+
+// The phase of a frame that begins. `has_particles`: something is known of the pose.
+Phase phase_of(const Lock& lock, const Method& method, bool has_particles);
+
+// The same after the image was compared with the predicted pose: a track that is not where it should be is confirmed
+// anew.
+Phase phase_after_prediction(Phase phase, bool image_agrees);
+
+// What a frame of a phase is worth. `predicted`: the image agrees with the predicted pose.
+struct Plan {
+    GradientStep step;      // of a particle
+    Refinement refinement;  // of a mode
+};
+Plan plan_of(Phase phase, const Method& method, bool predicted);
+
+// The frame's effect on the record, in this order.
+//   prediction: evidence fades, since what was accepted may have been moved; all of it where no motion was measured
+Lock after_prediction(Lock lock, bool motion_measured);
+//   choice of a mode: `alternatives_weight` only where all alternatives were tried
+Lock after_choice(Lock lock, bool replaced, const std::optional<double>& alternatives_weight);
+//   assessment; `agreement` is 0 where nothing is seen, `evidence` that of an accepted pose
+struct Assessment {
+    Verdict verdict = Verdict::kLost;
+    bool verified = false;
+    double agreement = 0.0;
+    double evidence = 0.0;
+};
+Lock after_assessment(Lock lock, const Assessment& assessment, const Refinement& refinement);
+
+}  // namespace nearpose

@@ -1,0 +1,13 @@
+// Global localisation: the particles at first, and after a loss.
+#pragma once
+
+#include "core/update/frame.hpp"
+#include "core/update/situation.hpp"
+
+namespace nearpose {
+
+// Poses drawn from what is seen, the best of which become the particles. Sets the situation's surfels and best
+// hypotheses from pairs.
+ParticleSet search(Situation& situation, const Frame& frame, Ledger& ledger);
+
+}  // namespace nearpose

@@ -1,0 +1,21 @@
+#include "core/update/situation.hpp"
+
+namespace nearpose {
+
+Situation situation_of(const Belief& predicted, const Method& method) {
+    Situation situation;
+    situation.phase = phase_of(predicted.lock, method, predicted.particles.size() > 0);
+    situation.plan = plan_of(situation.phase, method, false);
+    situation.window.everywhere = situation.searching();
+    if (!situation.searching() && predicted.tracked) situation.window.around = predicted.tracked->camera_from_object;
+    return situation;
+}
+
+std::optional<Pose> pose_before_loss(const Belief& predicted, Phase phase, const Method& method) {
+    if (phase != Phase::kSearching)
+        return confirmed(predicted.lock, method.refinement) ? std::nullopt : predicted.pose_before_loss;
+    if (predicted.pose_before_loss || !predicted.tracked) return predicted.pose_before_loss;
+    return predicted.tracked->camera_from_object;
+}
+
+}  // namespace nearpose

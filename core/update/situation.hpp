@@ -1,0 +1,39 @@
+// What is decided about a frame before its particles move.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/gradient_step.hpp"
+#include "core/patches.hpp"
+#include "core/update/belief.hpp"
+#include "core/update/phase.hpp"
+
+namespace nearpose {
+
+// Where poses are compared with the image.
+struct Window {
+    bool everywhere = false;     // the object may be anywhere: during a search
+    std::optional<Pose> around;  // else around this pose (camera_from_object), where nothing is segmented
+    // Of a search: how much each place of the image says about the pose. None: all places alike.
+    std::shared_ptr<const PatchGrid> surfels;
+};
+
+struct Situation {
+    Phase phase = Phase::kSearching;
+    Plan plan;  // what the phase is worth
+    Window window;
+    std::vector<Pose> best_from_pairs;        // of a search where nothing is segmented: its best hypotheses, best first
+    std::optional<MovedParticle> prediction;  // the predicted pose, where the image agrees with it
+
+    bool searching() const { return phase == Phase::kSearching; }
+};
+
+Situation situation_of(const Belief& predicted, const Method& method);
+
+// From a search on until the track is confirmed again: where the lost pose is by the arm's motion. The object may only
+// have been hidden for a while.
+std::optional<Pose> pose_before_loss(const Belief& predicted, Phase phase, const Method& method);
+
+}  // namespace nearpose
