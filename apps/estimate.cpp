@@ -13,6 +13,7 @@
 #include "apps/data_set/number_text.hpp"
 #include "apps/data_set/result_csv.hpp"
 #include "apps/estimate_options.hpp"
+#include "apps/estimate_outputs.hpp"
 #include "apps/estimator_setup.hpp"
 #include "apps/model_symmetries.hpp"
 #include "apps/pose_file.hpp"

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "apps/estimate_outputs.hpp"
 #include "apps/estimator_setup.hpp"
 #include "apps/model_symmetries.hpp"
 
@@ -101,12 +102,6 @@ void check(const EstimateOptions& options) {
     if (options.symmetries == "declared" && options.model.models.empty()) {
         throw BadUse("--symmetries declared needs --models, whose models_info.json holds them");
     }
-}
-
-std::unique_ptr<FrameSource> open_source(const EstimateOptions& options) {
-    const data_set::SceneOptions scene{options.scene_id, options.fps, options.first, options.last};
-    if (options.scene.empty()) return open_cloud_source(options.clouds, options.camera, scene, !options.no_mask);
-    return open_bop_source(options.scene, scene, {!options.no_mask, options.model.object, options.mask_index});
 }
 
 }  // namespace nearpose::program

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "apps/command_line.hpp"
 #include "apps/data_set/file_io.hpp"
 #include "apps/data_set/number_text.hpp"
 #include "apps/pictures/overlay.hpp"

@@ -1,29 +1,18 @@
 // Everything an estimation writes: result file, log, trajectory, pictures.
 #pragma once
 
-#include <filesystem>
 #include <optional>
-#include <string>
 
-#include "apps/command_line.hpp"
 #include "apps/data_set/log_jsonl.hpp"
 #include "apps/data_set/result_csv.hpp"
 #include "apps/data_set/trajectory_tum.hpp"
 #include "apps/frame_log.hpp"
 #include "apps/frame_source.hpp"
+#include "apps/runs/run_options.hpp"
 #include "core/estimator.hpp"
 #include "raycast/embree_scene.hpp"
 
 namespace nearpose::program {
-
-struct OutputOptions {
-    std::filesystem::path run;         // folder that gets all of it; empty: none
-    std::filesystem::path out;         // BOP result file
-    std::filesystem::path log;         // empty: none; the same for the next two
-    std::filesystem::path trajectory;  // TUM rows
-    std::filesystem::path pictures;    // folder
-    std::string trajectory_frame = "camera";
-};
 
 // Throws BadUse where nothing is to be written, or two outputs have the same name.
 void check(const OutputOptions& options);

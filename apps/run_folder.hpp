@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/estimate_options.hpp"
+#include "apps/runs/run_options.hpp"
 
 namespace nearpose::program {
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <vector>
 
-#include "apps/compare/purpose.hpp"
 #include "apps/compare/thread_time.hpp"
 #include "apps/evaluation/run_summary.hpp"
 #include "core/point_index.hpp"
@@ -17,6 +16,9 @@ namespace {
 constexpr double kParticleRotation_rad = 0.03;
 constexpr double kParticleOffsetDiameters = 0.008;
 constexpr int kTimedBlock = 10;  // views in a row of one generator
+
+// The stream of this module beside the estimator's and the simulation's own: poses around the true one.
+constexpr auto kTimedViewDraw = static_cast<RandomPurpose>(200);
 
 // What the camera sees from one pose, in its full resolution.
 struct TrueImage {
