@@ -5,8 +5,8 @@
 #include <numbers>
 #include <set>
 
-#include "apps/data_set/number_text.hpp"
-#include "apps/evaluation/run_summary.hpp"
+#include "apps/base/number_text.hpp"
+#include "apps/error_measures/run_summary.hpp"
 
 namespace nearpose::compare {
 namespace {

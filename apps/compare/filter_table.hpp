@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/compare/filter_run.hpp"
-#include "apps/experiment/results.hpp"
+#include "apps/tables/results.hpp"
 
 namespace nearpose::compare {
 

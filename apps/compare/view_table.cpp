@@ -4,8 +4,8 @@
 #include <atomic>
 #include <mutex>
 
-#include "apps/data_set/number_text.hpp"
-#include "apps/evaluation/run_summary.hpp"
+#include "apps/base/number_text.hpp"
+#include "apps/error_measures/run_summary.hpp"
 #include "core/check.hpp"
 #include "core/parallel.hpp"
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/compare/view_cell.hpp"
-#include "apps/estimator_setup.hpp"
-#include "apps/experiment/results.hpp"
+#include "apps/runs/estimator_setup.hpp"
+#include "apps/tables/results.hpp"
+#include "apps/view_quality/view_cell.hpp"
 
 namespace nearpose::compare {
 

@@ -28,9 +28,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/evaluation/run_summary.hpp"
-#include "apps/experiment/results.hpp"
+#include "apps/error_measures/run_summary.hpp"
 #include "apps/experiment/setting.hpp"
+#include "apps/tables/results.hpp"
 
 namespace nearpose::experiment {
 

@@ -8,7 +8,7 @@
 
 #include "apps/experiment/cell.hpp"
 #include "apps/experiment/description.hpp"
-#include "apps/experiment/results.hpp"
+#include "apps/tables/results.hpp"
 
 namespace nearpose::experiment {
 

@@ -1,8 +1,8 @@
 // results_of: tables and curves from finished cells.
 #include <stdexcept>
 
-#include "apps/degrees.hpp"
-#include "apps/evaluation/curve.hpp"
+#include "apps/base/degrees.hpp"
+#include "apps/error_measures/curve.hpp"
 #include "apps/experiment/experiment.hpp"
 #include "apps/experiment/run_setup.hpp"
 

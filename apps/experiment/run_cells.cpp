@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "apps/compare/thread_time.hpp"
+#include "apps/base/thread_time.hpp"
 #include "core/estimator.hpp"
 
 namespace nearpose::experiment {

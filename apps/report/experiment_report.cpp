@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/experiment/results.hpp"
+#include "apps/tables/results.hpp"
 
 namespace nearpose::report {
 namespace {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "apps/frame_source.hpp"
-#include "apps/model_input.hpp"
+#include "apps/part_model/model_input.hpp"
+#include "apps/runs/frame_source.hpp"
 #include "core/estimator.hpp"
 
 namespace nearpose::program {

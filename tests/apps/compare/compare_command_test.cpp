@@ -1,9 +1,9 @@
 // nearpose compare, run as a user would.
 #include <gtest/gtest.h>
 
-#include "apps/compare/table_text.hpp"
-#include "apps/experiment/results.hpp"
-#include "tests/apps/program/tiny_scene.hpp"
+#include "apps/tables/results.hpp"
+#include "apps/tables/table_text.hpp"
+#include "tests/apps/support/tiny_scene.hpp"
 
 namespace nearpose::compare {
 namespace {

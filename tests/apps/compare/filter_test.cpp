@@ -4,12 +4,12 @@
 #include <atomic>
 
 #include "apps/compare/filter_table.hpp"
-#include "apps/compare/view_cell.hpp"
-#include "apps/evaluation/run_summary.hpp"
+#include "apps/error_measures/run_summary.hpp"
+#include "apps/view_quality/view_cell.hpp"
 #include "raycast/depth_renderer.hpp"
 #include "raycast/embree_view_generator.hpp"
 #include "raycast/raster_view_generator.hpp"
-#include "tests/apps/program/tiny_scene.hpp"
+#include "tests/apps/support/tiny_scene.hpp"
 
 namespace nearpose::compare {
 namespace {

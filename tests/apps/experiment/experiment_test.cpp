@@ -2,10 +2,10 @@
 
 #include <atomic>
 
-#include "apps/experiment/results_text.hpp"
 #include "apps/experiment/run_setup.hpp"
-#include "tests/apps/data_set/test_files.hpp"
-#include "tests/apps/program/tiny_scene.hpp"
+#include "apps/tables/results_text.hpp"
+#include "tests/apps/support/test_files.hpp"
+#include "tests/apps/support/tiny_scene.hpp"
 
 namespace nearpose::experiment {
 namespace {

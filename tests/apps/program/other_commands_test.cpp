@@ -3,7 +3,7 @@
 
 #include "apps/data_set/bop_models.hpp"
 #include "apps/data_set/png_file.hpp"
-#include "tests/apps/program/tiny_scene.hpp"
+#include "tests/apps/support/tiny_scene.hpp"
 
 namespace nearpose::program_tests {
 namespace {

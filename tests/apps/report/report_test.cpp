@@ -2,14 +2,14 @@
 
 #include <filesystem>
 
-#include "apps/experiment/results.hpp"
 #include "apps/report/experiment_report.hpp"
 #include "apps/report/page.hpp"
 #include "apps/report/quantised.hpp"
 #include "apps/report/run_report.hpp"
 #include "apps/report/shown_mesh.hpp"
 #include "apps/report/text_forms.hpp"
-#include "tests/apps/program/tiny_scene.hpp"
+#include "apps/tables/results.hpp"
+#include "tests/apps/support/tiny_scene.hpp"
 
 namespace nearpose::report {
 namespace {
