@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "apps/base/simulation_draws.hpp"
@@ -108,6 +109,51 @@ double in_disparity_steps(double depth_m, double fx_times_baseline, double step_
     return steps < 1.0 ? 0.0 : fx_times_baseline / (steps * step_pixels);
 }
 
+// Gaussian draws of one frame, one a pixel, that neighbouring pixels share.
+struct FrameDraws {
+    std::vector<Eigen::Array4f> shared;  // axial noise, jitter in u, jitter in v, drop-outs at edges
+    std::vector<float> patches;          // drop-outs at grazing angles
+    std::vector<float> highlights;       // drop-outs in highlights; empty where the sensor has none
+    std::vector<float> bias;             // the frame's own error field; empty where the sensor has none
+};
+
+FrameDraws draw_frame(const SensorNoise& noise, const PinholeCamera& camera, std::uint64_t seed, std::uint64_t frame) {
+    FrameDraws draws;
+    draws.shared = correlated_noise(camera.width, camera.height, noise.correlation_pixels, seed, frame, kPixelDraw);
+    draws.patches = smooth_field(camera.width, camera.height, noise.grazing_patch_pixels, seed, frame, kPatchDraw);
+    if (noise.specular_drop_probability > 0.0) {
+        draws.highlights =
+            smooth_field(camera.width, camera.height, noise.specular_patch_pixels, seed, frame, kSpecularDraw);
+    }
+    if (noise.frame_bias_sigma_m > 0.0) {
+        draws.bias =
+            smooth_field(camera.width, camera.height, noise.frame_bias_length_pixels, seed, frame, kFrameBiasDraw);
+    }
+    return draws;
+}
+
+// Whether the surface at `seen` gives the pixel `index` no depth: it is seen too flat, or blinds the camera.
+bool gives_no_depth(const SensorNoise& noise, const ExactImage& exact, const FrameDraws& draws, std::size_t index,
+                    int seen) {
+    if (dropped_for_grazing(noise, exact.incidence_cosine(seen), draws.patches[index])) return true;
+    return !draws.highlights.empty() && in_highlight(noise, exact, seen) &&
+           uniform_of(draws.highlights[index]) < noise.specular_drop_probability;
+}
+
+// Depth of the surface at `seen` where the ray through (u, v) meets it [m]. At an edge it may be missing, or lie
+// between the two surfaces.
+std::optional<double> surface_depth(const SensorNoise& noise, const ExactImage& exact, int seen, double u, double v,
+                                    double edge_draw, RandomStream chance) {
+    double depth_m = exact.plane_depth(seen, u, v);
+    const float across_edge_m = depth_across_edge(exact, seen, noise);
+    if (across_edge_m >= 0.0F) {
+        if (uniform_of(edge_draw) < noise.edge_drop_probability) return std::nullopt;
+        const bool flies = chance.uniform() < noise.flying_probability;
+        if (flies && across_edge_m > 0.0F) depth_m += chance.uniform() * (across_edge_m - depth_m);
+    }
+    return depth_m;
+}
+
 }  // namespace
 
 void validate(const SensorNoise& noise) {
@@ -167,51 +213,28 @@ DepthImage DepthSensor::measure(const RenderedImage& exact_image, std::uint64_t 
         throw std::invalid_argument("measure: the image is not of the sensor's size");
     }
     const ExactImage exact{exact_image, camera_};
-    // Channels: axial noise, jitter in u, jitter in v, drop-outs at edges.
-    const std::vector<Eigen::Array4f> shared =
-        correlated_noise(camera_.width, camera_.height, noise_.correlation_pixels, seed_, frame, kPixelDraw);
-    const std::vector<float> patches =
-        smooth_field(camera_.width, camera_.height, noise_.grazing_patch_pixels, seed_, frame, kPatchDraw);
-    std::vector<float> highlights, frame_bias;
-    if (noise_.specular_drop_probability > 0.0) {
-        highlights =
-            smooth_field(camera_.width, camera_.height, noise_.specular_patch_pixels, seed_, frame, kSpecularDraw);
-    }
-    if (noise_.frame_bias_sigma_m > 0.0) {
-        frame_bias =
-            smooth_field(camera_.width, camera_.height, noise_.frame_bias_length_pixels, seed_, frame, kFrameBiasDraw);
-    }
+    const FrameDraws draws = draw_frame(noise_, camera_, seed_, frame);
     const std::vector<char> hidden = stereo_shadow(exact, noise_.baseline_m);
     DepthImage measured{camera_.width, camera_.height, std::vector<float>(exact_image.depth.depth_m.size(), 0.0F)};
     for (int pixel = 0; pixel < camera_.width * camera_.height; ++pixel) {
         const auto index = static_cast<std::size_t>(pixel);
-        const Eigen::Array4f& draw = shared[index];
+        const Eigen::Array4f& draw = draws.shared[index];
         const double u = pixel % camera_.width + noise_.jitter_pixels * draw[1];
         const double v = pixel / camera_.width + noise_.jitter_pixels * draw[2];
         // The pixel whose surface is measured; at the image's border the surface is taken to go on.
         const int seen =
             camera_.pixel_at(std::clamp(u, 0.0, camera_.width - 1.0), std::clamp(v, 0.0, camera_.height - 1.0));
         if (exact.depth(seen) == 0.0F || hidden[static_cast<std::size_t>(seen)] != 0) continue;
-        const double incidence_cosine = exact.incidence_cosine(seen);
-        if (dropped_for_grazing(noise_, incidence_cosine, patches[index])) continue;
-        if (!highlights.empty() && in_highlight(noise_, exact, seen) &&
-            uniform_of(highlights[index]) < noise_.specular_drop_probability) {
-            continue;
-        }
-        double depth_m = exact.plane_depth(seen, u, v);
-        const float across_edge_m = depth_across_edge(exact, seen, noise_);
-        if (across_edge_m >= 0.0F) {
-            if (uniform_of(draw[3]) < noise_.edge_drop_probability) continue;
-            RandomStream chance(seed_, frame, index, kPixelEventDraw);
-            const bool flies = chance.uniform() < noise_.flying_probability;
-            if (flies && across_edge_m > 0.0F) depth_m += chance.uniform() * (across_edge_m - depth_m);
-        }
+        if (gives_no_depth(noise_, exact, draws, index, seen)) continue;
+        const std::optional<double> surface_m =
+            surface_depth(noise_, exact, seen, u, v, draw[3], RandomStream(seed_, frame, index, kPixelEventDraw));
+        if (!surface_m) continue;
         const double sigma_m = noise_.angle_factor == 0.0
-                                   ? noise_.sigma_m(depth_m)
-                                   : noise_.sigma_m(depth_m, std::acos(std::min(1.0, incidence_cosine)));
-        depth_m *= 1.0 + noise_.depth_scale_error;
+                                   ? noise_.sigma_m(*surface_m)
+                                   : noise_.sigma_m(*surface_m, std::acos(std::min(1.0, exact.incidence_cosine(seen))));
+        double depth_m = *surface_m * (1.0 + noise_.depth_scale_error);
         depth_m += sigma_m * draw[0] + bias_m_[index];
-        if (!frame_bias.empty()) depth_m += noise_.frame_bias_sigma_m * frame_bias[index];
+        if (!draws.bias.empty()) depth_m += noise_.frame_bias_sigma_m * draws.bias[index];
         depth_m = in_disparity_steps(depth_m, camera_.fx * noise_.baseline_m, noise_.disparity_step_pixels);
         if (!(depth_m >= noise_.min_range_m && depth_m <= noise_.max_range_m)) continue;
         measured.depth_m[index] = static_cast<float>(depth_m);
