@@ -81,7 +81,7 @@ PoseEstimator start_estimator(const EstimateOptions& options, const Mesh& mesh, 
     return made;
 }
 
-RunDescription describe(const EstimateOptions& options, const FrameSource& source) {
+RunDescription run_description(const EstimateOptions& options, const FrameSource& source) {
     return {(options.scene.empty() ? options.clouds : options.scene).string(),
             model_file(options.model).string(),
             options.views,
@@ -190,7 +190,7 @@ int estimate(const EstimateOptions& given, const SharedOptions& shared) {
     check_motion(options, *source);
     const Mesh mesh = load_model(options.model, shared);
     PoseEstimator estimator = start_estimator(options, mesh, shared);
-    EstimateOutputs outputs(options.outputs, describe(options, *source), mesh);
+    EstimateOutputs outputs(options.outputs, run_description(options, *source), mesh);
     if (!options.outputs.run.empty()) write_run_record(options.outputs.run, options, source->scene_id());
     if (!source->notice().empty()) print_notice(source->notice(), shared.quiet);
     const std::string data_set_name =  // <data set>/test/<scene>
