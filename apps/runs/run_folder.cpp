@@ -109,6 +109,7 @@ EstimateOptions options_of(const JsonValue& json) {
     options.fps = json.at("fps").number();
     options.views = json.at("views").text();
     options.method = json.at("method").text();
+    if (const auto symmetries = json.find("symmetries")) options.symmetries = symmetries->text();
     options.particles = integer_of(json, "particles");
     options.threads = json.at("threads").integer();
     options.seed = json.at("seed").unsigned_integer();
