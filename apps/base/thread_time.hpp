@@ -1,8 +1,9 @@
+// Time that a thread has really worked.
 #pragma once
 
 #include <time.h>
 
-namespace nearpose::compare {
+namespace nearpose {
 
 // CPU time of the calling thread so far [s].
 inline double thread_cpu_s() {
@@ -11,4 +12,4 @@ inline double thread_cpu_s() {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-}  // namespace nearpose::compare
+}  // namespace nearpose

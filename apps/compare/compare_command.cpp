@@ -54,7 +54,7 @@ simulate::EmbeddedPart part_of(const CompareOptions& options, const SharedOption
     return {mesh, simulate::box_part(extent_of(mesh))};
 }
 
-experiment::Table compare_views(const CompareOptions& options, const compare::ViewBench& bench, bool quiet) {
+tables::Table compare_views(const CompareOptions& options, const compare::ViewBench& bench, bool quiet) {
     Progress progress("views", static_cast<int>(compare::rows_of(options.views).size()), quiet);
     return compare::view_table(bench, options.views, [&progress] {
         progress.step();
@@ -86,8 +86,8 @@ Reach reach_of(const CompareOptions& options) {
 }
 
 // Empty where the user stopped it.
-std::vector<experiment::Table> compare_in_filter(const CompareOptions& options, const simulate::EmbeddedPart& part,
-                                                 const compare::ViewBench& bench, bool quiet) {
+std::vector<tables::Table> compare_in_filter(const CompareOptions& options, const simulate::EmbeddedPart& part,
+                                             const compare::ViewBench& bench, bool quiet) {
     const std::vector<compare::ComparedFilter> filters = filters_of(options, bench);
     compare::FilterTableOptions table;
     table.distances_mm = options.views.distances_mm;
@@ -116,9 +116,9 @@ std::vector<experiment::Table> compare_in_filter(const CompareOptions& options, 
     return compare::filter_tables(filters, results, table);
 }
 
-void write_plots(const std::filesystem::path& folder, const experiment::Table& table) {
+void write_plots(const std::filesystem::path& folder, const tables::Table& table) {
     std::vector<pictures::CurvePlot> plots;
-    for (const experiment::CurveSet& set : table.curve_sets) {
+    for (const tables::CurveSet& set : table.curve_sets) {
         const bool shows =
             std::any_of(set.curves.begin(), set.curves.end(), [](const auto& c) { return !c.bins.empty(); });
         if (shows) plots.push_back({set.title, set.x_title, set.y_title, set.x_logarithmic, set.curves});
@@ -126,29 +126,29 @@ void write_plots(const std::filesystem::path& folder, const experiment::Table& t
     if (!plots.empty()) pictures::write_curve_plots(folder / (table.name + ".png"), plots);
 }
 
-void write_all(const std::filesystem::path& folder, const experiment::Results& results) {
+void write_all(const std::filesystem::path& folder, const tables::Results& results) {
     data_set::create_folder(folder);
-    experiment::write_results(folder / "results.json", results);
-    for (const experiment::Table& table : results.tables) write_plots(folder, table);
+    tables::write_results(folder / "results.json", results);
+    for (const tables::Table& table : results.tables) write_plots(folder, table);
 }
 
 int run_compare(const CompareOptions& options, bool part_given, const SharedOptions& shared) {
     check(options, part_given);
     const simulate::EmbeddedPart part = part_of(options, shared);
     const compare::ViewBench bench(part.mesh, part.part, simulate::default_camera());
-    experiment::Results results;
+    tables::Results results;
     results.name = "compare";
     results.command = "nearpose compare";
     if (options.scene.empty()) {
         results.tables.push_back(compare_views(options, bench, shared.quiet));
         if (interrupted()) return kInterrupted;
-        print(compare::text_of(results.tables.back()));
+        print(tables::text_of(results.tables.back()));
     }
     if (!options.views_only) {
         const auto tables = compare_in_filter(options, part, bench, shared.quiet);
         if (tables.empty()) return kInterrupted;
-        for (const experiment::Table& table : tables) {
-            print((results.tables.empty() ? "" : "\n") + compare::text_of(table));
+        for (const tables::Table& table : tables) {
+            print((results.tables.empty() ? "" : "\n") + tables::text_of(table));
             results.tables.push_back(table);
         }
     }

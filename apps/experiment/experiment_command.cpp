@@ -74,11 +74,11 @@ int list_cells(const std::vector<Unit>& units, const fs::path& out, int num_shar
 }
 
 // <table>-<n>.png of every set with a curve; the names, empty where there is none.
-std::vector<std::string> write_pictures(const experiment::Results& results, const fs::path& out) {
+std::vector<std::string> write_pictures(const tables::Results& results, const fs::path& out) {
     std::vector<std::string> names;
-    for (const experiment::Table& table : results.tables) {
+    for (const tables::Table& table : results.tables) {
         int number = 0;
-        for (const experiment::CurveSet& set : table.curve_sets) {
+        for (const tables::CurveSet& set : table.curve_sets) {
             const std::string name = table.name + "-" + std::to_string(++number) + ".png";
             const bool shows = std::any_of(set.curves.begin(), set.curves.end(),
                                            [](const evaluation::Curve& curve) { return !curve.bins.empty(); });
@@ -93,10 +93,10 @@ std::vector<std::string> write_pictures(const experiment::Results& results, cons
 
 void write_all(const Description& description, const std::vector<Unit>& units, const fs::path& out,
                const SharedOptions& shared) {
-    const experiment::Results results = experiment::results_of(description, out);
-    experiment::write_results(out / "results.json", results);
-    data_set::write_file_atomically(out / "results.csv", experiment::csv_of(results));
-    data_set::write_file_atomically(out / "results.md", experiment::markdown_of(results, write_pictures(results, out)));
+    const tables::Results results = experiment::results_of(description, out);
+    tables::write_results(out / "results.json", results);
+    data_set::write_file_atomically(out / "results.csv", tables::csv_of(results));
+    data_set::write_file_atomically(out / "results.md", tables::markdown_of(results, write_pictures(results, out)));
     const std::string versions = experiment::other_versions(units, out);
     if (!versions.empty()) {
         print_notice(

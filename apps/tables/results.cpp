@@ -5,7 +5,7 @@
 #include "apps/base/file_io.hpp"
 #include "apps/data_set/json_file.hpp"
 
-namespace nearpose::experiment {
+namespace nearpose::tables {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -114,4 +114,4 @@ Results read_results(const std::filesystem::path& path) {
     return results;
 }
 
-}  // namespace nearpose::experiment
+}  // namespace nearpose::tables

@@ -9,7 +9,7 @@
 
 #include "apps/error_measures/curve.hpp"
 
-namespace nearpose::experiment {
+namespace nearpose::tables {
 
 struct Column {
     std::string title;
@@ -53,4 +53,4 @@ struct Results {
 void write_results(const std::filesystem::path& path, const Results& results);
 Results read_results(const std::filesystem::path& path);
 
-}  // namespace nearpose::experiment
+}  // namespace nearpose::tables

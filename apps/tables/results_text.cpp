@@ -5,7 +5,7 @@
 
 #include "apps/base/number_text.hpp"
 
-namespace nearpose::experiment {
+namespace nearpose::tables {
 namespace {
 
 // A bar would end the cell.
@@ -117,4 +117,4 @@ std::string csv_of(const Results& results) {
     return text;
 }
 
-}  // namespace nearpose::experiment
+}  // namespace nearpose::tables

@@ -6,7 +6,7 @@
 
 #include "apps/tables/results.hpp"
 
-namespace nearpose::experiment {
+namespace nearpose::tables {
 
 // Tables with "value [low, high]". `pictures` are the file names of the curves, in the order of tables and sets; empty
 // where a set has no picture.
@@ -15,4 +15,4 @@ std::string markdown_of(const Results& results, const std::vector<std::string>& 
 // A line an entry: table,row,runs,column,unit,value,low,high; what is not known is left empty.
 std::string csv_of(const Results& results);
 
-}  // namespace nearpose::experiment
+}  // namespace nearpose::tables

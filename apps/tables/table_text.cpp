@@ -4,7 +4,7 @@
 
 #include "apps/base/number_text.hpp"
 
-namespace nearpose::compare {
+namespace nearpose::tables {
 namespace {
 
 constexpr std::size_t kTextWidth = 100;  // [letters]
@@ -17,11 +17,11 @@ std::string to_left(const std::string& text, std::size_t width) {
     return text + std::string(width > text.size() ? width - text.size() : 0, ' ');
 }
 
-std::string title_of(const experiment::Column& column) {
+std::string title_of(const Column& column) {
     return column.unit.empty() ? column.title : column.title + " [" + column.unit + "]";
 }
 
-std::string value_of(const experiment::Entry& entry, int decimals) {
+std::string value_of(const Entry& entry, int decimals) {
     return entry.value ? data_set::format_fixed(*entry.value, decimals) : "-";
 }
 
@@ -42,16 +42,16 @@ std::string wrapped(const std::string& text) {
 
 }  // namespace
 
-std::string text_of(const experiment::Table& table) {
+std::string text_of(const Table& table) {
     std::size_t label_width = 0;
-    for (const experiment::Row& row : table.rows) label_width = std::max(label_width, row.label.size());
+    for (const Row& row : table.rows) label_width = std::max(label_width, row.label.size());
     std::string text = table.title + "\n" + wrapped(table.text) + "\n" + to_left("", label_width) + "  runs";
-    for (const experiment::Column& column : table.columns) text += "  " + title_of(column);
+    for (const Column& column : table.columns) text += "  " + title_of(column);
     text += "\n";
-    for (const experiment::Row& row : table.rows) {
+    for (const Row& row : table.rows) {
         text += to_left(row.label, label_width) + to_right(std::to_string(row.runs), 6);
         for (std::size_t k = 0; k < table.columns.size() && k < row.entries.size(); ++k) {
-            const experiment::Column& column = table.columns[k];
+            const Column& column = table.columns[k];
             text += "  " + to_right(value_of(row.entries[k], column.decimals), title_of(column).size());
         }
         text += "\n";
@@ -59,4 +59,4 @@ std::string text_of(const experiment::Table& table) {
     return text;
 }
 
-}  // namespace nearpose::compare
+}  // namespace nearpose::tables

@@ -5,9 +5,9 @@
 
 #include "apps/tables/results.hpp"
 
-namespace nearpose::compare {
+namespace nearpose::tables {
 
 // Title, text, then aligned columns; values without their intervals, "-" where there is none.
-std::string text_of(const experiment::Table& table);
+std::string text_of(const Table& table);
 
-}  // namespace nearpose::compare
+}  // namespace nearpose::tables

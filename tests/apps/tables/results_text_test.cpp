@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace nearpose::experiment {
+namespace nearpose::tables {
 namespace {
 
 // A bin's line stands where its x does, also where only some curves have it.
@@ -26,4 +26,4 @@ TEST(ResultsText, TellsTheNumbersOfCurves) {
 }
 
 }  // namespace
-}  // namespace nearpose::experiment
+}  // namespace nearpose::tables
