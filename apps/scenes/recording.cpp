@@ -63,6 +63,31 @@ Mask none_of(const Mask& mask) {
     return {mask.width, mask.height, std::vector<std::uint8_t>(mask.value.size(), 0)};
 }
 
+// Which frames there are, by their place on the path, and what happens in them.
+struct Events {
+    explicit Events(const RecordingOptions& options)
+        : ids(kept_frames(options)),
+          moved_from(move_frame(options.disturbances, frames_of(options))),
+          nonsense(nonsense_frames(options.disturbances, ids, frames_of(options), options.seed)) {}
+
+    std::vector<int> ids;
+    std::optional<int> moved_from;  // the part lies elsewhere from this frame on
+    std::vector<int> nonsense;      // frames whose depth is not of the scene
+};
+
+// What is before the camera.
+struct Stage {
+    Stage(const Mesh& mesh, const Part& part, const RecordingOptions& options, const TaskPath& path)
+        : world(world_of(options.scenario, mesh, part, path, options.camera, options.seed,
+                         {options.with_table, options.path.occlusion, options.part_name})),
+          other(stand_in_of(options, part, path)),
+          scene(other ? other->mesh : mesh, world) {}
+
+    World world;
+    std::optional<StandIn> other;  // in the part's place
+    Scene scene;
+};
+
 // What the camera has before it, and what of it a segmentation takes for the part.
 struct Sight {
     RenderedFrame rendered;
@@ -106,22 +131,17 @@ struct Recording::Impl {
         : options(checked(given)),
           extent(part.extent),
           object_id(options.part_name.empty() ? 1 : object_id_of(options.part_name)),
-          ids(kept_frames(options)),
+          events(options),
           path(task_path(options.scenario, with_surface_points(part, mesh, options.scenario), options.camera,
                          frames_of(options), options.seed, options.path, options.frames_per_second)),
           camera_from_world(
               measured_motion(path.camera_from_scene, options.arm, options.seed, options.frames_per_second)),
-          world(world_of(options.scenario, mesh, part, path, options.camera, options.seed,
-                         {options.with_table, options.path.occlusion, options.part_name})),
-          other(stand_in_of(options, part, path)),
-          scene(other ? other->mesh : mesh, world),
-          noise(within_counts(options.sensor, options.depth_scale_mm)),
-          sensor(noise, options.camera, options.seed),
-          moved_from(move_frame(options.disturbances, frames_of(options))),
-          nonsense(nonsense_frames(options.disturbances, ids, frames_of(options), options.seed)) {
-        if (!moved_from) return;
-        const Pose scene_from_moved = put_down_elsewhere(scene, part, path, options.camera, *moved_from, options.seed);
-        for (auto frame = static_cast<std::size_t>(*moved_from); frame < path.camera_from_object.size(); ++frame)
+          stage(mesh, part, options, path),
+          sensor(within_counts(options.sensor, options.depth_scale_mm), options.camera, options.seed) {
+        if (!events.moved_from) return;
+        const Pose scene_from_moved =
+            put_down_elsewhere(stage.scene, part, path, options.camera, *events.moved_from, options.seed);
+        for (auto frame = static_cast<std::size_t>(*events.moved_from); frame < path.camera_from_object.size(); ++frame)
             path.camera_from_object[frame] = path.camera_from_scene[frame] * scene_from_moved;
     }
 
@@ -130,15 +150,16 @@ struct Recording::Impl {
         const Pose &camera_from_object = path.camera_from_object[place],
                    &camera_from_scene = path.camera_from_scene[place];
         const auto look = [&](const Pose& pose, bool with_part) {
-            return scene.render(pose, camera_from_scene, options.camera, with_part);
+            return stage.scene.render(pose, camera_from_scene, options.camera, with_part);
         };
         if (options.disturbances.scene == SceneContent::kEmpty)
             return {look(camera_from_object, false), blob_over(look(camera_from_object, true).instances[0].visible)};
         const bool there = !looks_away(options.disturbances, frame, frames_of(options));
-        Sight sight{look(other ? camera_from_scene * other->scene_from_object : camera_from_object, there), {}};
+        Sight sight{look(stage.other ? camera_from_scene * stage.other->scene_from_object : camera_from_object, there),
+                    {}};
         InstanceView& tracked = sight.rendered.instances.front();
         sight.segmented = tracked.visible;
-        if (other) {  // of the part itself there is nothing
+        if (stage.other) {  // of the part itself there is nothing
             tracked = {none_of(tracked.silhouette), none_of(tracked.visible), {}};
             tracked.truth.camera_from_object = camera_from_object;
         }
@@ -146,30 +167,26 @@ struct Recording::Impl {
     }
 
     DepthImage depth_of(const RenderedImage& image, int frame) const {
-        const auto found = std::find(nonsense.begin(), nonsense.end(), frame);
-        if (found == nonsense.end()) return sensor.measure(image, static_cast<std::uint64_t>(frame));
-        const bool flat = (found - nonsense.begin()) % 2 == 1;  // in turns
-        return nonsense_depth(options.camera, noise, flat, options.seed, frame);
+        const auto found = std::find(events.nonsense.begin(), events.nonsense.end(), frame);
+        if (found == events.nonsense.end()) return sensor.measure(image, static_cast<std::uint64_t>(frame));
+        const bool flat = (found - events.nonsense.begin()) % 2 == 1;  // in turns
+        return nonsense_depth(options.camera, within_counts(options.sensor, options.depth_scale_mm), flat, options.seed,
+                              frame);
     }
 
     // Of instance `index` of the scene; 0: such as the data set does not have.
     int object_id_at(std::size_t index) const {
-        return index <= world.copies.size() ? object_id : world.other->object_id;
+        return index <= stage.world.copies.size() ? object_id : stage.world.other->object_id;
     }
 
     RecordingOptions options;
     ModelExtent extent;
     int object_id;
-    std::vector<int> ids;
+    Events events;
     TaskPath path;
     std::vector<Pose> camera_from_world;
-    World world;
-    std::optional<StandIn> other;  // in the part's place
-    Scene scene;
-    SensorNoise noise;
+    Stage stage;
     DepthSensor sensor;
-    std::optional<int> moved_from;  // frame number
-    std::vector<int> nonsense;      // frame numbers
 };
 
 Recording::Recording(const Mesh& mesh, const Part& part, const RecordingOptions& options)
@@ -178,7 +195,7 @@ Recording::~Recording() = default;
 Recording::Recording(Recording&&) noexcept = default;
 
 int Recording::num_frames() const {
-    return static_cast<int>(impl_->ids.size());
+    return static_cast<int>(impl_->events.ids.size());
 }
 
 const RecordingOptions& Recording::options() const {
@@ -192,13 +209,13 @@ const ModelExtent& Recording::extent() const {
 SimulatedFrame Recording::frame(int index) const {
     const RecordingOptions& options = impl_->options;
     SimulatedFrame frame;
-    frame.id = impl_->ids.at(static_cast<std::size_t>(index));
+    frame.id = impl_->events.ids.at(static_cast<std::size_t>(index));
     const auto place = static_cast<std::size_t>(frame.id);
     frame.stamp_s = frame.id / options.frames_per_second;
     frame.camera_from_object = impl_->path.camera_from_object[place];
     frame.camera_from_world = impl_->camera_from_world[place];
-    frame.nonsense = std::count(impl_->nonsense.begin(), impl_->nonsense.end(), frame.id) > 0;
-    frame.part_moved = impl_->moved_from && frame.id >= *impl_->moved_from;
+    frame.nonsense = std::count(impl_->events.nonsense.begin(), impl_->events.nonsense.end(), frame.id) > 0;
+    frame.part_moved = impl_->events.moved_from && frame.id >= *impl_->events.moved_from;
     Sight sight = impl_->sight_at(frame.id);
     RenderedFrame& rendered = sight.rendered;
     // Through counts and back, as through a file.
