@@ -21,14 +21,19 @@ nearpose=build/release/apps/nearpose
     --pictures "$out/piston/pictures"
 
 line=$(grep -nxF -- "$mark" "$document" | cut -d: -f1) || { echo "nearpose: $document has no line  $mark" >&2; exit 1; }
-rm -rf apps/experiments/pictures
 mkdir -p apps/experiments/pictures
+rm -f apps/experiments/pictures/*.png  # the README's animation stays
 cp "$out"/*.png "$out"/accuracy/*.png apps/experiments/pictures/
 for frame in 000000 000030 000059; do cp "$out/piston/pictures/$frame.png" "apps/experiments/pictures/piston-$frame.png"; done
 {
     head -n "$line" "$document"
     echo
-    cat <(tail -n +3 "$out/accuracy/results.md") <(tail -n +3 "$out/results.md") | sed 's|](\([a-z0-9-]*\.png\))|](experiments/pictures/\1)|'
+    # Lines of at most 100 characters, but for tables.
+    cat <(tail -n +3 "$out/accuracy/results.md") <(tail -n +3 "$out/results.md") |
+        sed 's|](\([a-z0-9-]*\.png\))|](experiments/pictures/\1)|' |
+        while IFS= read -r text; do
+            if [[ $text == \|* ]]; then printf '%s\n' "$text"; else fold -s -w 100 <<<"$text" | sed 's/ *$//'; fi
+        done
 } >"$document.new"
 mv "$document.new" "$document"
 echo "the tables and pictures in $document are those of $out"

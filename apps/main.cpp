@@ -1,4 +1,4 @@
-#include "apps/command_line.hpp"
+#include "apps/program/program.hpp"
 
 int main(int argc, char** argv) {
     return nearpose::program::run_program(argc, argv);

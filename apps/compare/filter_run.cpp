@@ -2,9 +2,9 @@
 
 #include <map>
 
-#include "apps/compare/thread_time.hpp"
-#include "apps/evaluation/scene_truth.hpp"
-#include "apps/frame_source.hpp"
+#include "apps/base/thread_time.hpp"
+#include "apps/error_measures/scene_truth.hpp"
+#include "apps/runs/frame_source.hpp"
 
 namespace nearpose::compare {
 namespace {

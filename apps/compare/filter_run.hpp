@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "apps/data_set/bop_models.hpp"
-#include "apps/estimator_setup.hpp"
-#include "apps/evaluation/frame_errors.hpp"
-#include "apps/simulate/parts.hpp"
-#include "apps/simulate/recording.hpp"
+#include "apps/error_measures/frame_errors.hpp"
+#include "apps/runs/estimator_setup.hpp"
+#include "apps/scenes/parts.hpp"
+#include "apps/scenes/recording.hpp"
 #include "core/observation.hpp"
 
 namespace nearpose::compare {

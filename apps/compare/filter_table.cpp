@@ -5,8 +5,8 @@
 #include <numbers>
 #include <set>
 
-#include "apps/data_set/number_text.hpp"
-#include "apps/evaluation/run_summary.hpp"
+#include "apps/base/number_text.hpp"
+#include "apps/error_measures/run_summary.hpp"
 
 namespace nearpose::compare {
 namespace {
@@ -21,18 +21,18 @@ std::string label_of(const ComparedFilter& filter) {
     return filter.method + ", " + filter.views;
 }
 
-experiment::Entry mean_entry(const std::vector<double>& value_of_run) {
+tables::Entry mean_entry(const std::vector<double>& value_of_run) {
     if (value_of_run.empty()) return {};
     const evaluation::Interval mean = evaluation::mean_over_runs(value_of_run);
     return {mean.value, mean.low, mean.high};
 }
 
-experiment::Entry share_entry(int successes, int trials) {
+tables::Entry share_entry(int successes, int trials) {
     const evaluation::Interval share = evaluation::proportion(successes, trials);
     return {100.0 * share.value, 100.0 * share.low, 100.0 * share.high};
 }
 
-experiment::Row run_row(const ComparedFilter& filter, const std::vector<Frames>& runs, double diameter_m) {
+tables::Row run_row(const ComparedFilter& filter, const std::vector<Frames>& runs, double diameter_m) {
     std::vector<double> translation_mm, translation_95_mm, rotation_deg, frames_to_arrive, time_ms;
     int arrived = 0, held = 0;
     for (const Frames& frames : runs) {
@@ -103,14 +103,14 @@ double median_of(const std::vector<double>& values) {
     return evaluation::statistics_of(values).median;
 }
 
-experiment::Table by_distance(const std::vector<ComparedFilter>& filters, const FilterResults& results,
-                              const FilterTableOptions& options, Value value, OfRun of_run, const std::string& unit) {
-    experiment::Table table;
+tables::Table by_distance(const std::vector<ComparedFilter>& filters, const FilterResults& results,
+                          const FilterTableOptions& options, Value value, OfRun of_run, const std::string& unit) {
+    tables::Table table;
     for (const double distance_mm : options.distances_mm) {
         table.columns.push_back({"at " + data_set::format_number(distance_mm) + " mm", unit, 1});
     }
     for (std::size_t k = 0; k < filters.size(); ++k) {
-        experiment::Row row{label_of(filters[k]), static_cast<int>(results[k].size()), {}};
+        tables::Row row{label_of(filters[k]), static_cast<int>(results[k].size()), {}};
         for (std::size_t d = 0; d < options.distances_mm.size(); ++d) {
             std::vector<double> of_runs;
             for (const auto& values : values_near(results[k], options, d, value)) of_runs.push_back(of_run(values));
@@ -122,13 +122,13 @@ experiment::Table by_distance(const std::vector<ComparedFilter>& filters, const 
 }
 
 // Of one method's filters: more curves than that nobody can tell apart.
-experiment::CurveSet error_curves(const std::vector<ComparedFilter>& filters, const FilterResults& results,
-                                  const FilterTableOptions& options, const std::string& method,
-                                  const std::string& quantity, const std::string& unit, Value value) {
+tables::CurveSet error_curves(const std::vector<ComparedFilter>& filters, const FilterResults& results,
+                              const FilterTableOptions& options, const std::string& method, const std::string& quantity,
+                              const std::string& unit, Value value) {
     constexpr int kBins = 10;
     constexpr double kMargin = 1.1;  // on either side, so that frames at the ends count
     const auto [low, high] = std::minmax_element(options.distances_mm.begin(), options.distances_mm.end());
-    experiment::CurveSet set{
+    tables::CurveSet set{
         "Method " + method + ": " + quantity, options.distance_name + " [mm]", quantity + " [" + unit + "]", false, {}};
     for (std::size_t k = 0; k < filters.size(); ++k) {
         if (filters[k].method != method) continue;
@@ -152,9 +152,9 @@ std::optional<double> visible_distance(const evaluation::FrameErrors& frame) {
     return frame.visibility->distance_m;
 }
 
-std::vector<experiment::Table> filter_tables(const std::vector<ComparedFilter>& filters, const FilterResults& results,
-                                             const FilterTableOptions& options) {
-    experiment::Table runs;
+std::vector<tables::Table> filter_tables(const std::vector<ComparedFilter>& filters, const FilterResults& results,
+                                         const FilterTableOptions& options) {
+    tables::Table runs;
     runs.name = "filter";
     runs.title = "In the filter";
     runs.text =
@@ -181,13 +181,13 @@ std::vector<experiment::Table> filter_tables(const std::vector<ComparedFilter>& 
             error_curves(filters, results, options, filter.method, "rotation error", "deg", rotation_deg));
     }
 
-    experiment::Table kept = by_distance(filters, results, options, in_limit_percent, mean_of, "%");
+    tables::Table kept = by_distance(filters, results, options, in_limit_percent, mean_of, "%");
     kept.name = "filter_kept";
     kept.title = "In the filter, by distance: frames within 10 mm and 5 degrees";
     kept.text =
         "Share of the frames, mean over the runs. A frame counts for the distance that is nearest, by ratio, to the " +
         options.distance_name + ".";
-    experiment::Table errors = by_distance(filters, results, options, translation_mm, median_of, "mm");
+    tables::Table errors = by_distance(filters, results, options, translation_mm, median_of, "mm");
     errors.name = "filter_errors";
     errors.title = "In the filter, by distance: translation error";
     errors.text =

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/compare/filter_run.hpp"
-#include "apps/experiment/results.hpp"
+#include "apps/tables/results.hpp"
 
 namespace nearpose::compare {
 
@@ -30,7 +30,7 @@ FilterResults filter_results(const std::vector<ComparedFilter>& filters,
                              const std::function<void()>& run_done);
 
 // Error, arrival and CPU time of whole runs; then how well the pose is kept at each distance.
-std::vector<experiment::Table> filter_tables(const std::vector<ComparedFilter>& filters, const FilterResults& results,
-                                             const FilterTableOptions& options);
+std::vector<tables::Table> filter_tables(const std::vector<ComparedFilter>& filters, const FilterResults& results,
+                                         const FilterTableOptions& options);
 
 }  // namespace nearpose::compare

@@ -4,8 +4,8 @@
 #include <atomic>
 #include <mutex>
 
-#include "apps/data_set/number_text.hpp"
-#include "apps/evaluation/run_summary.hpp"
+#include "apps/base/number_text.hpp"
+#include "apps/error_measures/run_summary.hpp"
 #include "core/check.hpp"
 #include "core/parallel.hpp"
 
@@ -14,7 +14,7 @@ namespace {
 
 struct Quantity {
     const char* number;  // of ViewBench::numbers
-    experiment::Column column;
+    tables::Column column;
 };
 
 const std::vector<Quantity>& quantities() {
@@ -55,8 +55,8 @@ std::vector<double> values_of(const std::vector<std::vector<NamedNumber>>& runs,
     return values;
 }
 
-experiment::Row row_of(const ViewCell& cell, const std::vector<std::vector<NamedNumber>>& runs) {
-    experiment::Row row;
+tables::Row row_of(const ViewCell& cell, const std::vector<std::vector<NamedNumber>>& runs) {
+    tables::Row row;
     row.label = data_set::format_number(cell.distance_mm) + " mm, " + generator_name(cell);
     row.runs = static_cast<int>(runs.size());
     for (const Quantity& quantity : quantities()) {
@@ -78,10 +78,10 @@ evaluation::CurveBin bin_of(double distance_mm, std::vector<double> values) {
 }
 
 // One curve a generator, over the distance.
-experiment::CurveSet curves_of(const std::string& title, const std::string& number, const std::string& y_title,
-                               const std::vector<ViewCell>& cells,
-                               const std::vector<std::vector<std::vector<NamedNumber>>>& runs) {
-    experiment::CurveSet set{title, "distance [mm]", y_title, false, {}};
+tables::CurveSet curves_of(const std::string& title, const std::string& number, const std::string& y_title,
+                           const std::vector<ViewCell>& cells,
+                           const std::vector<std::vector<std::vector<NamedNumber>>>& runs) {
+    tables::CurveSet set{title, "distance [mm]", y_title, false, {}};
     for (std::size_t i = 0; i < cells.size(); ++i) {
         const std::vector<double> values = values_of(runs[i], number);
         if (values.empty()) continue;
@@ -123,8 +123,8 @@ std::vector<ViewCell> rows_of(const ViewTableOptions& options) {
     return rows;
 }
 
-experiment::Table view_table(const ViewBench& bench, const ViewTableOptions& options,
-                             const std::function<bool()>& row_done) {
+tables::Table view_table(const ViewBench& bench, const ViewTableOptions& options,
+                         const std::function<bool()>& row_done) {
     validate(options);
     const std::vector<ViewCell> cells = rows_of(options);
     std::vector<std::vector<std::vector<NamedNumber>>> runs(cells.size());
@@ -138,7 +138,7 @@ experiment::Table view_table(const ViewBench& bench, const ViewTableOptions& opt
         if (!row_done()) stopped = true;
     });
 
-    experiment::Table table;
+    tables::Table table;
     table.name = "views";
     table.title = "Views alone";
     table.text =

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/compare/view_cell.hpp"
-#include "apps/estimator_setup.hpp"
-#include "apps/experiment/results.hpp"
+#include "apps/runs/estimator_setup.hpp"
+#include "apps/tables/results.hpp"
+#include "apps/view_quality/view_cell.hpp"
 
 namespace nearpose::compare {
 
@@ -28,7 +28,7 @@ std::vector<ViewCell> rows_of(const ViewTableOptions& options);
 
 // Means over the lines of sight with their confidence intervals. `row_done` is called once a row, never twice at the
 // same time, and returns false to stop: then rows are missing. Only times depend on the machine and its load.
-experiment::Table view_table(const ViewBench& bench, const ViewTableOptions& options,
-                             const std::function<bool()>& row_done);
+tables::Table view_table(const ViewBench& bench, const ViewTableOptions& options,
+                         const std::function<bool()>& row_done);
 
 }  // namespace nearpose::compare

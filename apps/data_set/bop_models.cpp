@@ -5,9 +5,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "apps/data_set/file_io.hpp"
+#include "apps/base/file_io.hpp"
+#include "apps/base/number_text.hpp"
 #include "apps/data_set/json_file.hpp"
-#include "apps/data_set/number_text.hpp"
 
 namespace nearpose::data_set {
 namespace {

@@ -5,8 +5,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "apps/base/number_text.hpp"
 #include "apps/data_set/camera_json.hpp"
-#include "apps/data_set/number_text.hpp"
 #include "apps/data_set/png_file.hpp"
 
 namespace nearpose::data_set {

@@ -6,10 +6,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "apps/base/file_io.hpp"
+#include "apps/base/number_text.hpp"
 #include "apps/data_set/bop_scene.hpp"
 #include "apps/data_set/camera_json.hpp"
-#include "apps/data_set/file_io.hpp"
-#include "apps/data_set/number_text.hpp"
 #include "apps/data_set/png_file.hpp"
 
 namespace nearpose::data_set {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "apps/data_set/file_io.hpp"
-#include "apps/data_set/number_text.hpp"
+#include "apps/base/file_io.hpp"
+#include "apps/base/number_text.hpp"
 
 namespace nearpose::data_set {
 namespace {

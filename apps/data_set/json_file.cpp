@@ -8,8 +8,8 @@
 #include <set>
 #include <stdexcept>
 
-#include "apps/data_set/file_io.hpp"
-#include "apps/data_set/number_text.hpp"
+#include "apps/base/file_io.hpp"
+#include "apps/base/number_text.hpp"
 
 namespace nearpose::data_set {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "apps/data_set/file_io.hpp"
+#include "apps/base/file_io.hpp"
 
 namespace nearpose::data_set {
 

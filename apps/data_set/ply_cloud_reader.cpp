@@ -3,9 +3,9 @@
 #include <stdexcept>
 #include <vector>
 
+#include "apps/base/number_text.hpp"
+#include "apps/base/text_split.hpp"
 #include "apps/data_set/cloud_fields.hpp"
-#include "apps/data_set/number_text.hpp"
-#include "apps/data_set/text_split.hpp"
 
 namespace nearpose::data_set {
 namespace {

@@ -5,10 +5,10 @@
 #include <limits>
 #include <stdexcept>
 
+#include "apps/base/file_io.hpp"
+#include "apps/base/number_text.hpp"
+#include "apps/base/text_split.hpp"
 #include "apps/data_set/cloud_fields.hpp"
-#include "apps/data_set/file_io.hpp"
-#include "apps/data_set/number_text.hpp"
-#include "apps/data_set/text_split.hpp"
 
 namespace nearpose::data_set {
 namespace {

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "apps/data_set/number_text.hpp"
-#include "apps/data_set/text_split.hpp"
+#include "apps/base/number_text.hpp"
+#include "apps/base/text_split.hpp"
 
 namespace nearpose::data_set {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/data_set/file_io.hpp"
+#include "apps/base/file_io.hpp"
 #include "core/pose.hpp"
 
 namespace nearpose::data_set {

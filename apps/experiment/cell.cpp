@@ -1,9 +1,9 @@
 #include "apps/experiment/cell.hpp"
 
-#include "apps/data_set/file_io.hpp"
+#include "apps/base/file_io.hpp"
+#include "apps/base/number_text.hpp"
+#include "apps/base/version.hpp"
 #include "apps/data_set/json_file.hpp"
-#include "apps/data_set/number_text.hpp"
-#include "apps/version.hpp"
 
 namespace nearpose::experiment {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/evaluation/frame_errors.hpp"
+#include "apps/error_measures/frame_errors.hpp"
 #include "apps/experiment/column.hpp"
 #include "apps/experiment/setting.hpp"
 

@@ -18,7 +18,7 @@ struct ColumnRule {
     Pooling pooling = Pooling::kMean;
     std::string among = {};  // the figure that is 1 for the runs that count; empty: all
     double scale = 1.0;
-    Column heading = {};
+    tables::Column heading = {};
 };
 
 struct ErrorKind {
@@ -101,7 +101,7 @@ std::vector<ColumnRule> run_columns() {
 
 // As compare::ViewBench::numbers names them.
 std::vector<ColumnRule> view_columns() {
-    const std::pair<const char*, Column> columns[] = {
+    const std::pair<const char*, tables::Column> columns[] = {
         {"points_per_view", {"points a view", "", 0}},
         {"pixels_per_view", {"pixels a view", "", 0}},
         {"wrong_percent", {"wrongly visible", "%", 2}},
@@ -130,21 +130,21 @@ const ColumnRule& rule_named(TableKind kind, const std::string& name) {
     throw std::out_of_range("no column " + name);
 }
 
-Entry scaled(const Entry& entry, double scale) {
+tables::Entry scaled(const tables::Entry& entry, double scale) {
     const auto times = [scale](const std::optional<double>& value) {
         return value ? std::optional(*value * scale) : std::nullopt;
     };
     return {times(entry.value), times(entry.low), times(entry.high)};
 }
 
-Entry mean_of(const std::vector<double>& values) {
+tables::Entry mean_of(const std::vector<double>& values) {
     if (values.empty()) return {};
     if (values.size() == 1) return {values.front(), {}, {}};
     const evaluation::Interval mean = evaluation::mean_over_runs(values);
     return {mean.value, mean.low, mean.high};
 }
 
-Entry share_of(const std::vector<double>& values) {
+tables::Entry share_of(const std::vector<double>& values) {
     if (values.empty()) return {};
     const auto yes = std::count(values.begin(), values.end(), 1.0);
     const evaluation::Interval share = evaluation::proportion(static_cast<int>(yes), static_cast<int>(values.size()));
@@ -233,16 +233,16 @@ std::vector<std::string> column_names(TableKind kind) {
     return names;
 }
 
-Column heading_of(TableKind kind, const std::string& name) {
+tables::Column heading_of(TableKind kind, const std::string& name) {
     return rule_named(kind, name).heading;
 }
 
-Entry median_of(std::vector<double> values) {
+tables::Entry median_of(std::vector<double> values) {
     if (values.empty()) return {};
     std::sort(values.begin(), values.end());
     const auto finite = [](double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; };
     const std::size_t n = values.size(), middle = n / 2;
-    Entry entry;
+    tables::Entry entry;
     entry.value = finite(n % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]));
     // Ranks k and n + 1 - k enclose the median unless fewer than k values lie on one side of it: a binomial tail.
     double tail = 0.0, term = std::pow(0.5, static_cast<double>(n));
@@ -258,7 +258,7 @@ Entry median_of(std::vector<double> values) {
     return entry;
 }
 
-Entry entry_of(TableKind kind, const std::string& name, const std::vector<Figures>& runs) {
+tables::Entry entry_of(TableKind kind, const std::string& name, const std::vector<Figures>& runs) {
     const ColumnRule& rule = rule_named(kind, name);
     std::vector<double> values;
     for (const Figures& run : runs) {

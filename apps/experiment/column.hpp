@@ -28,9 +28,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/evaluation/run_summary.hpp"
-#include "apps/experiment/results.hpp"
+#include "apps/error_measures/run_summary.hpp"
 #include "apps/experiment/setting.hpp"
+#include "apps/tables/results.hpp"
 
 namespace nearpose::experiment {
 
@@ -40,10 +40,10 @@ Figures figures_of(const evaluation::RunSummary& summary, const evaluation::Summ
 
 std::vector<std::string> column_names(TableKind kind);
 // Both throw std::out_of_range for a name that is not among these.
-Column heading_of(TableKind kind, const std::string& name);
-Entry entry_of(TableKind kind, const std::string& name, const std::vector<Figures>& runs);
+tables::Column heading_of(TableKind kind, const std::string& name);
+tables::Entry entry_of(TableKind kind, const std::string& name, const std::vector<Figures>& runs);
 
 // Of the median, from ranks of the values, which may hold infinity; without bounds where there are too few (5).
-Entry median_of(std::vector<double> values);
+tables::Entry median_of(std::vector<double> values);
 
 }  // namespace nearpose::experiment

@@ -4,8 +4,8 @@
 #include <cctype>
 #include <set>
 
+#include "apps/base/nearest_word.hpp"
 #include "apps/experiment/column.hpp"
-#include "apps/nearest_word.hpp"
 
 namespace nearpose::experiment {
 namespace {

@@ -6,11 +6,11 @@
 #include <set>
 #include <stdexcept>
 
-#include "apps/data_set/number_text.hpp"
-#include "apps/data_set/text_split.hpp"
+#include "apps/base/number_text.hpp"
+#include "apps/base/text_split.hpp"
+#include "apps/base/version.hpp"
 #include "apps/experiment/run_cells.hpp"
 #include "apps/experiment/run_setup.hpp"
-#include "apps/version.hpp"
 #include "core/parallel.hpp"
 
 namespace nearpose::experiment {

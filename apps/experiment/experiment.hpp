@@ -8,7 +8,7 @@
 
 #include "apps/experiment/cell.hpp"
 #include "apps/experiment/description.hpp"
-#include "apps/experiment/results.hpp"
+#include "apps/tables/results.hpp"
 
 namespace nearpose::experiment {
 
@@ -59,7 +59,7 @@ void gather(const std::vector<Unit>& units, const std::vector<std::filesystem::p
 std::vector<int> missing_cells(const std::vector<Unit>& units, const std::filesystem::path& out, int num_shards);
 
 // Tables and curves of all cells, which must be finished. Their figures decide alone, not who made them when.
-Results results_of(const Description& description, const std::filesystem::path& out);
+tables::Results results_of(const Description& description, const std::filesystem::path& out);
 
 // Other versions of the program that cells were made with, "0.1.0, 0.2.0"; empty where all are of this one.
 std::string other_versions(const std::vector<Unit>& units, const std::filesystem::path& out);

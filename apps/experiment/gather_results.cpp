@@ -1,8 +1,8 @@
 // results_of: tables and curves from finished cells.
 #include <stdexcept>
 
-#include "apps/degrees.hpp"
-#include "apps/evaluation/curve.hpp"
+#include "apps/base/degrees.hpp"
+#include "apps/error_measures/curve.hpp"
 #include "apps/experiment/experiment.hpp"
 #include "apps/experiment/run_setup.hpp"
 
@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Row row_of(const TableSpec& table, const RowSpec& row, const fs::path& out) {
+tables::Row row_of(const TableSpec& table, const RowSpec& row, const fs::path& out) {
     std::vector<Figures> runs;
     for (const std::uint64_t seed : table.seeds) {
         const CellKey key{table.name, row.slug, seed};
@@ -19,7 +19,7 @@ Row row_of(const TableSpec& table, const RowSpec& row, const fs::path& out) {
         if (!cell) throw std::runtime_error((cell_folder(out, key) / "cell.json").string() + ": is not finished");
         runs.push_back(cell->figures);
     }
-    Row result{row.label, static_cast<int>(runs.size()), {}};
+    tables::Row result{row.label, static_cast<int>(runs.size()), {}};
     for (const std::string& column : table.columns) result.entries.push_back(entry_of(table.kind, column, runs));
     return result;
 }
@@ -42,10 +42,10 @@ void add_points(const CurveSpec& curve, const std::vector<evaluation::FrameError
     }
 }
 
-CurveSet empty_set(const CurveSpec& curve) {
+tables::CurveSet empty_set(const CurveSpec& curve) {
     const bool translation = curve.y == "translation";
     const std::string what = translation ? "Translation error" : "Rotation error";
-    CurveSet set;
+    tables::CurveSet set;
     set.y_title = translation ? "translation error [mm]" : "rotation error [deg]";
     set.x_logarithmic = curve.logarithmic;
     if (curve.x == "distance") {
@@ -62,8 +62,8 @@ CurveSet empty_set(const CurveSpec& curve) {
 }
 
 // Frames are read once for all curves of a row.
-std::vector<CurveSet> curve_sets_of(const TableSpec& table, const fs::path& out) {
-    std::vector<CurveSet> sets;
+std::vector<tables::CurveSet> curve_sets_of(const TableSpec& table, const fs::path& out) {
+    std::vector<tables::CurveSet> sets;
     for (const CurveSpec& curve : table.curves) sets.push_back(empty_set(curve));
     if (sets.empty()) return sets;
     for (const RowSpec& row : table.rows) {
@@ -87,12 +87,12 @@ std::vector<CurveSet> curve_sets_of(const TableSpec& table, const fs::path& out)
 
 }  // namespace
 
-Results results_of(const Description& description, const fs::path& out) {
-    Results results;
+tables::Results results_of(const Description& description, const fs::path& out) {
+    tables::Results results;
     results.name = description.name;
     results.command = "nearpose experiment " + description.file.filename().string() + " --out FOLDER";
     for (const TableSpec& spec : description.tables) {
-        Table& table = results.tables.emplace_back();
+        tables::Table& table = results.tables.emplace_back();
         table.name = spec.name;
         table.title = spec.title;
         table.text = spec.text;

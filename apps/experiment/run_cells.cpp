@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "apps/compare/thread_time.hpp"
+#include "apps/base/thread_time.hpp"
 #include "core/estimator.hpp"
 
 namespace nearpose::experiment {
@@ -26,9 +26,9 @@ class FrameInput {
     const Observation& observation(bool with_mask) {
         std::optional<Observation>& made = observations_[with_mask ? 1 : 0];
         if (!made) {
-            const double begin = compare::thread_cpu_s();
+            const double begin = thread_cpu_s();
             made = make_observation(frame_.depth, camera_, with_mask ? std::optional(frame_.given_mask) : std::nullopt);
-            cpu_s_[with_mask ? 1 : 0] = compare::thread_cpu_s() - begin;
+            cpu_s_[with_mask ? 1 : 0] = thread_cpu_s() - begin;
         }
         return *made;
     }
@@ -61,11 +61,11 @@ constexpr Diffusion kSpreadAtTruth{0.0087266462599716477, 0.001};  // half a deg
 void track(Lane& lane, FrameInput& input, const std::optional<Pose>& now_from_before,
            const evaluation::TrueFrame& truth, const evaluation::ModelShape& shape, const PinholeCamera& camera) {
     const Observation& observation = input.observation(lane.setup.use_mask);
-    const double begin = compare::thread_cpu_s();
+    const double begin = thread_cpu_s();
     if (lane.starts_at_truth) lane.estimator.reset(truth.camera_from_object, kSpreadAtTruth);
     const bool moved = lane.setup.use_control && !lane.starts_at_truth;  // the true pose is of this frame already
     const UpdateResult result = lane.estimator.update(observation, moved ? now_from_before : std::nullopt);
-    lane.cpu_s.push_back(compare::thread_cpu_s() - begin + input.cpu_s(lane.setup.use_mask));
+    lane.cpu_s.push_back(thread_cpu_s() - begin + input.cpu_s(lane.setup.use_mask));
     std::optional<evaluation::EstimatedFrame> estimate;
     if (result.status != UpdateStatus::kNoPose) {
         estimate.emplace();

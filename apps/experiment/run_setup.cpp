@@ -5,11 +5,11 @@
 
 #include "apps/data_set/bop_models.hpp"
 #include "apps/data_set/trajectory_tum.hpp"
+#include "apps/depth_sensor/sensor_file.hpp"
 #include "apps/experiment/cad_error.hpp"
-#include "apps/import/import_model.hpp"
-#include "apps/model_input.hpp"
-#include "apps/model_symmetries.hpp"
-#include "apps/simulate/sensor_file.hpp"
+#include "apps/part_model/import_model.hpp"
+#include "apps/part_model/model_input.hpp"
+#include "apps/part_model/model_symmetries.hpp"
 #include "raycast/mesh_loader.hpp"
 
 namespace nearpose::experiment {

@@ -8,13 +8,13 @@
 #include <mutex>
 #include <string>
 
-#include "apps/compare/view_cell.hpp"
-#include "apps/estimator_setup.hpp"
-#include "apps/evaluation/frame_errors.hpp"
-#include "apps/evaluation/run_summary.hpp"
+#include "apps/error_measures/frame_errors.hpp"
+#include "apps/error_measures/run_summary.hpp"
 #include "apps/experiment/description.hpp"
-#include "apps/simulate/parts.hpp"
-#include "apps/simulate/recording.hpp"
+#include "apps/runs/estimator_setup.hpp"
+#include "apps/scenes/parts.hpp"
+#include "apps/scenes/recording.hpp"
+#include "apps/view_quality/view_cell.hpp"
 
 namespace nearpose::experiment {
 

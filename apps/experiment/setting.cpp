@@ -2,13 +2,13 @@
 
 #include <cmath>
 
-#include "apps/compare/view_cell.hpp"
-#include "apps/data_set/number_text.hpp"
-#include "apps/estimator_setup.hpp"
+#include "apps/base/nearest_word.hpp"
+#include "apps/base/number_text.hpp"
 #include "apps/experiment/cad_error.hpp"
-#include "apps/nearest_word.hpp"
-#include "apps/simulate/parts.hpp"
-#include "apps/simulate/scenario.hpp"
+#include "apps/runs/estimator_setup.hpp"
+#include "apps/scenes/parts.hpp"
+#include "apps/scenes/scenario.hpp"
+#include "apps/view_quality/view_cell.hpp"
 
 namespace nearpose::experiment {
 namespace {

@@ -4,14 +4,14 @@
 #include <optional>
 #include <stdexcept>
 
+#include "apps/base/file_io.hpp"
+#include "apps/base/number_text.hpp"
+#include "apps/base/text_split.hpp"
 #include "apps/data_set/bop_scene.hpp"
 #include "apps/data_set/bop_writer.hpp"
 #include "apps/data_set/camera_json.hpp"
-#include "apps/data_set/file_io.hpp"
-#include "apps/data_set/number_text.hpp"
 #include "apps/data_set/png_file.hpp"
-#include "apps/data_set/text_split.hpp"
-#include "apps/import/import.hpp"
+#include "apps/import/import_frames.hpp"
 
 namespace nearpose::data_set {
 namespace {

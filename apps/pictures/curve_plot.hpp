@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/evaluation/curve.hpp"
+#include "apps/error_measures/curve.hpp"
 
 namespace nearpose::pictures {
 

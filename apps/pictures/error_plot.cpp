@@ -22,11 +22,11 @@ struct ErrorPanel {
     std::optional<double> ErrorPoint::*value;
 };
 
-double x_of(const Axis& frames, double frame) {
+double sheet_x(const Axis& frames, double frame) {
     return kSheetLeft + frames.fraction(frame) * (kSheetRight - kSheetLeft);
 }
 
-double y_of(const ErrorPanel& panel, const Axis& values, double value) {
+double sheet_y(const ErrorPanel& panel, const Axis& values, double value) {
     return panel.bottom - values.fraction(value) * (panel.bottom - panel.top);
 }
 
@@ -36,22 +36,23 @@ bool shade_missing(Canvas& canvas, const ErrorPanel& panel, const Axis& frames, 
     for (const ErrorPoint& point : points) {
         if (point.*panel.value) continue;
         any = true;
-        canvas.fill_rectangle(x_of(frames, point.frame_id - 0.5), panel.top, x_of(frames, point.frame_id + 0.5),
+        canvas.fill_rectangle(sheet_x(frames, point.frame_id - 0.5), panel.top, sheet_x(frames, point.frame_id + 0.5),
                               panel.bottom, kNoPose);
     }
     return any;
 }
 
-void draw_axes(Canvas& canvas, const ErrorPanel& panel, const Axis& frames, const Axis& values, bool label_frames) {
+void draw_error_axes(Canvas& canvas, const ErrorPanel& panel, const Axis& frames, const Axis& values,
+                     bool label_frames) {
     for (const double tick : frames.ticks) {
-        const double x = x_of(frames, tick);
+        const double x = sheet_x(frames, tick);
         canvas.polyline({{x, panel.top}, {x, panel.bottom}}, 1.0, kSheetGrid);
         if (label_frames) {
             canvas.text({x, panel.bottom + 20.0}, Axis::label(tick), kSheetTextSize, kSheetInk, Align::kCentre);
         }
     }
     for (const double tick : values.ticks) {
-        const double y = y_of(panel, values, tick);
+        const double y = sheet_y(panel, values, tick);
         canvas.polyline({{kSheetLeft, y}, {kSheetRight, y}}, 1.0, kSheetGrid);
         canvas.text({kSheetLeft - 10.0, y + 0.5 * kSheetTextSize}, Axis::label(tick), kSheetTextSize, kSheetInk,
                     Align::kRight);
@@ -64,12 +65,12 @@ void draw_axes(Canvas& canvas, const ErrorPanel& panel, const Axis& frames, cons
                     1.0, kSheetFrame);
 }
 
-void draw_curve(Canvas& canvas, const ErrorPanel& panel, const Axis& frames, const Axis& values,
-                const std::vector<ErrorPoint>& points) {
+void draw_error_curve(Canvas& canvas, const ErrorPanel& panel, const Axis& frames, const Axis& values,
+                      const std::vector<ErrorPoint>& points) {
     std::vector<Eigen::Vector2d> run;  // frames with a pose, one after the other
     for (const ErrorPoint& point : points) {
         const std::optional<double>& value = point.*panel.value;
-        if (value) run.emplace_back(x_of(frames, point.frame_id), y_of(panel, values, *value));
+        if (value) run.emplace_back(sheet_x(frames, point.frame_id), sheet_y(panel, values, *value));
         if (value && points.size() <= 200) canvas.disc(run.back(), 3.0, panel.color);
         if (value) continue;
         canvas.polyline(run, 2.0, panel.color);
@@ -78,7 +79,7 @@ void draw_curve(Canvas& canvas, const ErrorPanel& panel, const Axis& frames, con
     canvas.polyline(run, 2.0, panel.color);
 }
 
-void draw_legend(Canvas& canvas, const ErrorPanel& panel, bool any_missing) {
+void draw_error_legend(Canvas& canvas, const ErrorPanel& panel, bool any_missing) {
     const std::string missing = "no pose";
     const double width = 46.0 + Canvas::text_width(panel.label, kSheetTextSize);
     const double missing_width = any_missing ? 50.0 + Canvas::text_width(missing, kSheetTextSize) : 0.0;
@@ -94,17 +95,17 @@ void draw_legend(Canvas& canvas, const ErrorPanel& panel, bool any_missing) {
     canvas.text({x + 32.0, y + 0.5 * kSheetTextSize}, missing, kSheetTextSize, kSheetInk);
 }
 
-void draw_panel(Canvas& canvas, const ErrorPanel& panel, const Axis& frames, const std::vector<ErrorPoint>& points,
-                bool label_frames) {
+void draw_error_panel(Canvas& canvas, const ErrorPanel& panel, const Axis& frames,
+                      const std::vector<ErrorPoint>& points, bool label_frames) {
     std::vector<double> present;
     for (const ErrorPoint& point : points) {
         if (point.*panel.value) present.push_back(*(point.*panel.value));
     }
     const Axis values = error_axis(present);
     const bool any_missing = shade_missing(canvas, panel, frames, points);
-    draw_axes(canvas, panel, frames, values, label_frames);
-    draw_curve(canvas, panel, frames, values, points);
-    draw_legend(canvas, panel, any_missing);
+    draw_error_axes(canvas, panel, frames, values, label_frames);
+    draw_error_curve(canvas, panel, frames, values, points);
+    draw_error_legend(canvas, panel, any_missing);
 }
 
 }  // namespace
@@ -117,8 +118,8 @@ void write_error_plot(const std::filesystem::path& path, const std::string& titl
     const Axis frames = frame_axis(points.front().frame_id, points.back().frame_id, 10);
     const ErrorPanel translation{60.0, 330.0, "translation error [mm]", kTranslation, &ErrorPoint::translation_mm};
     const ErrorPanel rotation{355.0, 625.0, "rotation error [deg]", kRotation, &ErrorPoint::rotation_deg};
-    draw_panel(canvas, translation, frames, points, false);
-    draw_panel(canvas, rotation, frames, points, true);
+    draw_error_panel(canvas, translation, frames, points, false);
+    draw_error_panel(canvas, rotation, frames, points, true);
     canvas.text({0.5 * (kSheetLeft + kSheetRight), 668.0}, "frame", kSheetTextSize, kSheetInk, Align::kCentre);
     canvas.save(path);
 }

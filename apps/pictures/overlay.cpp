@@ -126,7 +126,8 @@ PinholeCamera finer(const PinholeCamera& camera, int factor) {
 }
 
 // The object's axes at the centre of its box: x red, y green, z blue.
-void draw_axes(Canvas& canvas, const ModelExtent& extent, const Pose& camera_from_object, const PinholeCamera& camera) {
+void draw_object_axes(Canvas& canvas, const ModelExtent& extent, const Pose& camera_from_object,
+                      const PinholeCamera& camera) {
     constexpr double kLengthDiameters = 0.18;
     constexpr std::array<Color, 3> kColors = {{{255, 70, 70}, {80, 220, 80}, {90, 150, 255}}};
     const Eigen::Vector3d centre = camera_from_object * extent.centre_in_object();
@@ -152,7 +153,7 @@ void draw_model(Canvas& canvas, const EmbreeScene& model, const Pose& camera_fro
     draw_edges(canvas, outline, Edge::kCrease, 1.0, color, 0.65);
     draw_edges(canvas, outline, Edge::kOutline, 4.0, kHalo, 0.45);
     draw_edges(canvas, outline, Edge::kOutline, 2.0, color, 1.0);
-    draw_axes(canvas, model.extent(), camera_from_object, camera);
+    draw_object_axes(canvas, model.extent(), camera_from_object, camera);
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/experiment/results.hpp"
+#include "apps/tables/results.hpp"
 
 namespace nearpose::report {
 namespace {
@@ -29,19 +29,19 @@ Json curve_json(const evaluation::Curve& curve) {
         {"percentile_95", top}, {"count", count}};
 }
 
-Json table_json(const experiment::Table& table) {
+Json table_json(const tables::Table& table) {
     Json columns = Json::array(), rows = Json::array(), sets = Json::array();
-    for (const experiment::Column& column : table.columns) {
+    for (const tables::Column& column : table.columns) {
         columns.push_back({{"title", column.title}, {"unit", column.unit}, {"decimals", column.decimals}});
     }
-    for (const experiment::Row& row : table.rows) {
+    for (const tables::Row& row : table.rows) {
         Json entries = Json::array();
-        for (const experiment::Entry& entry : row.entries) {
+        for (const tables::Entry& entry : row.entries) {
             entries.push_back({number_json(entry.value), number_json(entry.low), number_json(entry.high)});
         }
         rows.push_back({{"label", row.label}, {"runs", row.runs}, {"entries", entries}});
     }
-    for (const experiment::CurveSet& set : table.curve_sets) {
+    for (const tables::CurveSet& set : table.curve_sets) {
         Json curves = Json::array();
         for (const evaluation::Curve& curve : set.curves) curves.push_back(curve_json(curve));
         sets.push_back({{"title", set.title},
@@ -57,9 +57,9 @@ Json table_json(const experiment::Table& table) {
 }  // namespace
 
 Report experiment_report(const std::filesystem::path& results_json) {
-    const experiment::Results results = experiment::read_results(results_json);
+    const tables::Results results = tables::read_results(results_json);
     Json tables = Json::array();
-    for (const experiment::Table& table : results.tables) tables.push_back(table_json(table));
+    for (const tables::Table& table : results.tables) tables.push_back(table_json(table));
     const Json data = {{"format", 1},
                        {"kind", "experiment"},
                        {"title", results.name},

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "apps/evaluation/run_summary.hpp"
+#include "apps/error_measures/run_summary.hpp"
 #include "apps/report/run_input.hpp"
 
 namespace nearpose::report {

@@ -4,10 +4,10 @@
 #include <memory>
 #include <optional>
 
-#include "apps/evaluation/frame_errors.hpp"
+#include "apps/error_measures/frame_errors.hpp"
 #include "apps/report/run_log.hpp"
 #include "apps/report/run_report.hpp"
-#include "apps/run_folder.hpp"
+#include "apps/runs/run_folder.hpp"
 #include "raycast/mesh.hpp"
 
 namespace nearpose::report {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <functional>
 
-#include "apps/data_set/file_io.hpp"
+#include "apps/base/file_io.hpp"
+#include "apps/base/text_split.hpp"
 #include "apps/data_set/json_file.hpp"
-#include "apps/data_set/text_split.hpp"
 
 namespace nearpose::report {
 namespace {

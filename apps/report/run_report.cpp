@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "apps/data_set/png_file.hpp"
-#include "apps/estimator_setup.hpp"
 #include "apps/report/cloud_sample.hpp"
 #include "apps/report/depth_picture.hpp"
 #include "apps/report/quantised.hpp"
@@ -12,6 +11,7 @@
 #include "apps/report/run_input.hpp"
 #include "apps/report/shown_mesh.hpp"
 #include "apps/report/text_forms.hpp"
+#include "apps/runs/estimator_setup.hpp"
 #include "core/parallel.hpp"
 
 namespace nearpose::report {

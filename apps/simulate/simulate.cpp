@@ -5,16 +5,16 @@
 #include <map>
 #include <mutex>
 
+#include "apps/base/file_io.hpp"
+#include "apps/base/number_text.hpp"
 #include "apps/data_set/bop_models.hpp"
 #include "apps/data_set/bop_scene.hpp"
 #include "apps/data_set/bop_writer.hpp"
-#include "apps/data_set/file_io.hpp"
-#include "apps/data_set/number_text.hpp"
 #include "apps/data_set/png_file.hpp"
 #include "apps/data_set/trajectory_tum.hpp"
-#include "apps/import/import_model.hpp"
-#include "apps/model_symmetries.hpp"
-#include "apps/simulate/parts.hpp"
+#include "apps/part_model/import_model.hpp"
+#include "apps/part_model/model_symmetries.hpp"
+#include "apps/scenes/parts.hpp"
 #include "apps/simulate/staged_folder.hpp"
 #include "core/parallel.hpp"
 #include "raycast/mesh_loader.hpp"

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "apps/simulate/recording.hpp"
+#include "apps/scenes/recording.hpp"
 #include "core/symmetry.hpp"
 #include "raycast/mesh.hpp"
 

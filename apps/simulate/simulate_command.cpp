@@ -5,12 +5,12 @@
 #include <memory>
 #include <optional>
 
-#include "apps/console.hpp"
+#include "apps/base/console.hpp"
 #include "apps/data_set/camera_json.hpp"
-#include "apps/model_input.hpp"
-#include "apps/model_symmetries.hpp"
-#include "apps/simulate/parts.hpp"
-#include "apps/simulate/sensor_file.hpp"
+#include "apps/depth_sensor/sensor_file.hpp"
+#include "apps/part_model/model_input.hpp"
+#include "apps/part_model/model_symmetries.hpp"
+#include "apps/scenes/parts.hpp"
 #include "apps/simulate/simulate.hpp"
 
 namespace nearpose::program {

@@ -1,7 +1,7 @@
 // nearpose simulate: a BOP data set of simulated depth images.
 #pragma once
 
-#include "apps/command_line.hpp"
+#include "apps/base/command.hpp"
 
 namespace nearpose::program {
 

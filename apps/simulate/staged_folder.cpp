@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "apps/data_set/file_io.hpp"
+#include "apps/base/file_io.hpp"
 
 namespace nearpose::simulate {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/simulate/parts.hpp"
-#include "apps/simulate/recording.hpp"
+#include "apps/scenes/parts.hpp"
+#include "apps/scenes/recording.hpp"
 #include "core/method.hpp"
 #include "core/particles.hpp"
 #include "core/start.hpp"

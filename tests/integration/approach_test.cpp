@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "apps/simulate/parts.hpp"
+#include "apps/scenes/parts.hpp"
 #include "apps/simulate/simulate.hpp"
 #include "tests/integration/run_scene.hpp"
 

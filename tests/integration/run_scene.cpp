@@ -6,8 +6,8 @@
 #include "apps/data_set/bop_ground_truth.hpp"
 #include "apps/data_set/bop_models.hpp"
 #include "apps/data_set/bop_scene.hpp"
-#include "apps/estimator_setup.hpp"
-#include "apps/frame_source.hpp"
+#include "apps/runs/estimator_setup.hpp"
+#include "apps/runs/frame_source.hpp"
 #include "core/estimator.hpp"
 #include "raycast/mesh_loader.hpp"
 

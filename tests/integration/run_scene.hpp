@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/evaluation/frame_errors.hpp"
+#include "apps/error_measures/frame_errors.hpp"
 
 namespace nearpose::test {
 

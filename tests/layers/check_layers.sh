@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # The layers: includes go apps -> {raycast, optim} -> core, never back, never raycast <-> optim; each heavy library enters
-# one folder and only its .cpp files, so that no installed header includes it. Prints every breach; exit 1 if any.
+# one folder and only its .cpp files, so that no installed header includes it. Inside a folder they go from a room to the
+# rooms below it. Prints every breach; exit 1 if any.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 breaches=0
@@ -12,6 +13,36 @@ forbid() {
     found=$(grep -nE "^[[:space:]]*#[[:space:]]*include[[:space:]]*[<\"]($what)" "$@" /dev/null)
     [[ -z $found ]] && return
     echo "$why:"
+    echo "$found"
+    breaches=1
+}
+# check_room_order FOLDER ROOM...: the rooms of FOLDER from the bottom to the top; a file includes only its own room and
+# those before it. A room is a folder, or the name without its ending of files that lie in FOLDER itself. Rooms in one
+# word, as in 'a b', stand side by side and do not include each other. A source file in no room of the list is a breach.
+check_room_order() {
+    local folder=$1
+    shift
+    local found
+    found=$({
+        printf 'room %s\n' "$@"
+        files "$folder" | sed 's/^/file /'
+        files "$folder" | xargs grep -nE "^[[:space:]]*#[[:space:]]*include[[:space:]]*[<\"]$folder/" /dev/null
+    } | awk -v folder="$folder/" '
+        function room(path) {
+            path = substr(path, length(folder) + 1)
+            sub(path ~ "/" ? "/.*" : "[.][a-z]+$", "", path)
+            return path
+        }
+        $1 == "room" { ++height; for (i = 2; i <= NF; ++i) height_of[$i] = height; next }
+        $1 == "file" { if (!(room($2) in height_of)) print $2 ": is in no room of the list"; next }
+        {
+            own = room(substr($0, 1, index($0, ":") - 1))
+            split($0, parts, /[<"]/)
+            other = room(parts[2])
+            if (height_of[other] > height_of[own] || (other != own && height_of[other] == height_of[own])) print
+        }')
+    [[ -z $found ]] && return
+    echo "a room of $folder includes what is not below it:"
     echo "$found"
     breaches=1
 }
@@ -34,6 +65,11 @@ forbid 'optim/|raycast/embree|core/(correspondence|estimator|fine_fit|gradient_s
 forbid 'ceres/|flann|omp\.h' 'a heavy library outside its folder' "${raycast[@]}"
 forbid 'embree|assimp|flann|omp\.h' 'a heavy library outside its folder' "${optim[@]}"
 forbid 'flann|omp\.h' 'a heavy library outside its folder' "${apps[@]}"
+
+# Rooms that several commands share, then one room a command, then the list of the commands.
+check_room_order apps base data_set part_model depth_sensor scenes error_measures tables pictures runs view_quality \
+    'compare estimate evaluate experiment fit_sensor import render report simulate' program main
+
 for library in embree assimp flann omp; do
     count=$(grep -lE "^#[[:space:]]*include[[:space:]]*<$library" "${core[@]}" "${raycast[@]}" | wc -l)
     [[ $count -le 2 ]] || { echo "$library is included by $count files"; breaches=1; }

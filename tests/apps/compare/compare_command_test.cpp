@@ -1,9 +1,7 @@
 // nearpose compare, run as a user would.
 #include <gtest/gtest.h>
 
-#include "apps/compare/table_text.hpp"
-#include "apps/experiment/results.hpp"
-#include "tests/apps/program/tiny_scene.hpp"
+#include "tests/apps/support/tiny_scene.hpp"
 
 namespace nearpose::compare {
 namespace {
@@ -25,9 +23,9 @@ TEST(CompareCommand, ComparesViewsAlone) {
         out);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_TRUE(contains(outcome.out, "100 mm, raster 500")) << outcome.out;
-    const experiment::Results results = experiment::read_results(scene.file("out/results.json"));
+    const tables::Results results = tables::read_results(scene.file("out/results.json"));
     ASSERT_EQ(results.tables.size(), 1U);
-    const experiment::Table& table = results.tables[0];
+    const tables::Table& table = results.tables[0];
     ASSERT_EQ(table.rows.size(), 6U);
     EXPECT_EQ(table.rows[0].label, "300 mm, raycast");
     EXPECT_EQ(table.rows[0].runs, 2);
@@ -49,7 +47,7 @@ TEST(CompareCommand, ComparesInTheFilterOnASweep) {
     const Outcome outcome = run_nearpose(call);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_TRUE(contains(outcome.out, "paper, raster")) << outcome.out;
-    EXPECT_EQ(experiment::read_results(scene.file("out/results.json")).tables.size(), 4U);
+    EXPECT_EQ(tables::read_results(scene.file("out/results.json")).tables.size(), 4U);
     EXPECT_TRUE(std::filesystem::is_regular_file(scene.file("out/filter.png")));
 }
 
@@ -73,19 +71,6 @@ TEST(CompareCommand, SaysWhatDoesNotFit) {
                              "--scene folder", "--unit mm", "--scene a --models b --views-only"}) {
         EXPECT_EQ(run_nearpose(std::string("compare ") + call).exit_code, 2) << call;
     }
-}
-
-TEST(TableText, AlignsColumnsAndMarksWhatIsNotKnown) {
-    experiment::Table table;
-    table.title = "Title";
-    table.text = "Text.";
-    table.columns = {{"a", "mm", 1}, {"long title", "", 0}};
-    table.rows = {{"first", 3, {{1.75, {}, {}}, {7.0, {}, {}}}}, {"2nd", 12, {{}, {123.0, {}, {}}}}};
-    EXPECT_EQ(text_of(table),
-              "Title\nText.\n\n"
-              "       runs  a [mm]  long title\n"
-              "first     3     1.8           7\n"
-              "2nd      12       -         123\n");
 }
 
 }  // namespace

@@ -4,12 +4,12 @@
 #include <atomic>
 
 #include "apps/compare/filter_table.hpp"
-#include "apps/compare/view_cell.hpp"
-#include "apps/evaluation/run_summary.hpp"
+#include "apps/error_measures/run_summary.hpp"
+#include "apps/view_quality/view_cell.hpp"
 #include "raycast/depth_renderer.hpp"
 #include "raycast/embree_view_generator.hpp"
 #include "raycast/raster_view_generator.hpp"
-#include "tests/apps/program/tiny_scene.hpp"
+#include "tests/apps/support/tiny_scene.hpp"
 
 namespace nearpose::compare {
 namespace {
@@ -103,7 +103,7 @@ TEST(FilterTables, SayWhatTheFramesSay) {
     options.seeds = 2;
     const auto tables = filter_tables({{"raycast", "paper", 16, nullptr}}, {{good, bad}}, options);
     ASSERT_EQ(tables.size(), 3U);
-    const std::vector<experiment::Entry>& whole = tables[0].rows.at(0).entries;
+    const std::vector<tables::Entry>& whole = tables[0].rows.at(0).entries;
     ASSERT_EQ(whole.size(), tables[0].columns.size());
     EXPECT_EQ(tables[0].rows[0].label, "paper, raycast");
     EXPECT_EQ(tables[0].rows[0].runs, 2);
@@ -114,11 +114,11 @@ TEST(FilterTables, SayWhatTheFramesSay) {
     EXPECT_NEAR(*whole[5].value, 2.0, 1e-9);   // frames to arrive, of the one that does
     EXPECT_NEAR(*whole[6].value, 20.0, 1e-9);  // ms
     // 0.31 m is nearer to 0.4 than to 0.2 by ratio.
-    const std::vector<experiment::Entry>& kept = tables[1].rows.at(0).entries;
+    const std::vector<tables::Entry>& kept = tables[1].rows.at(0).entries;
     EXPECT_NEAR(*kept[0].value, 25.0, 1e-9);
     EXPECT_NEAR(*kept[1].value, 50.0, 1e-9);
     EXPECT_FALSE(kept[2].value.has_value());
-    const std::vector<experiment::Entry>& errors = tables[2].rows.at(0).entries;
+    const std::vector<tables::Entry>& errors = tables[2].rows.at(0).entries;
     EXPECT_NEAR(*errors[0].value, 0.5 * (252.0 + 300.0), 1e-9);
     EXPECT_NEAR(*errors[1].value, 0.5 * (2.0 + 100.0), 1e-9);
 }

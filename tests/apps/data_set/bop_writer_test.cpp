@@ -9,7 +9,7 @@
 #include "apps/data_set/bop_scene.hpp"
 #include "apps/data_set/camera_json.hpp"
 #include "apps/data_set/json_file.hpp"
-#include "tests/apps/data_set/test_files.hpp"
+#include "tests/apps/support/test_files.hpp"
 
 namespace nearpose::data_set {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "tests/apps/data_set/test_files.hpp"
+#include "tests/apps/support/test_files.hpp"
 
 namespace nearpose::data_set {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/apps/data_set/test_files.hpp"
+#include "tests/apps/support/test_files.hpp"
 
 namespace nearpose::data_set {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "tests/apps/data_set/test_files.hpp"
+#include "tests/apps/support/test_files.hpp"
 
 namespace nearpose::data_set {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "apps/data_set/text_split.hpp"
-#include "tests/apps/data_set/test_files.hpp"
+#include "apps/base/text_split.hpp"
+#include "tests/apps/support/test_files.hpp"
 
 namespace nearpose::data_set {
 namespace {

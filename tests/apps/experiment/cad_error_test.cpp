@@ -5,8 +5,8 @@
 #include <Eigen/Geometry>
 #include <numeric>
 
-#include "apps/simulate/parts.hpp"
-#include "apps/simulate/world.hpp"
+#include "apps/scenes/parts.hpp"
+#include "apps/scenes/world.hpp"
 
 namespace nearpose::experiment {
 namespace {

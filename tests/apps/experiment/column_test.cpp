@@ -117,14 +117,14 @@ TEST(Columns, PoolRuns) {
     EXPECT_DOUBLE_EQ(*entry_of(TableKind::kRun, "translation_mean_held", runs).value, 2.0);
     EXPECT_DOUBLE_EQ(*entry_of(TableKind::kRun, "translation_mean_converged", runs).value, 2.0);
     EXPECT_DOUBLE_EQ(*entry_of(TableKind::kRun, "translation_median", runs).value, 3.0);
-    const Entry share = entry_of(TableKind::kRun, "held", runs);
+    const tables::Entry share = entry_of(TableKind::kRun, "held", runs);
     EXPECT_DOUBLE_EQ(*share.value, 50.0);
     EXPECT_LT(*share.low, 50.0);
     EXPECT_GT(*share.high, 50.0);
     // Two of four never arrive: their median is not known.
     EXPECT_FALSE(entry_of(TableKind::kRun, "frames_to_arrive", runs).value);
     EXPECT_DOUBLE_EQ(*entry_of(TableKind::kRun, "frames_to_arrive", {runs[0], runs[1], runs[2]}).value, 1.0);
-    const Entry lonely = entry_of(TableKind::kRun, "translation_mean", {runs[0]});
+    const tables::Entry lonely = entry_of(TableKind::kRun, "translation_mean", {runs[0]});
     EXPECT_TRUE(lonely.value && !lonely.low && !lonely.high);
     EXPECT_FALSE(entry_of(TableKind::kRun, "translation_mean", {runs[3]}).value);
 }
@@ -142,14 +142,14 @@ TEST(Columns, EveryNameHasAHeading) {
 TEST(Median, HasTheIntervalOfItsRanks) {
     std::vector<double> values;
     for (int i = 1; i <= 20; ++i) values.push_back(i);
-    const Entry entry = median_of(values);
+    const tables::Entry entry = median_of(values);
     EXPECT_EQ(*entry.value, 10.5);
     EXPECT_EQ(*entry.low, 6.0);  // tables of the sign test: 20 values, ranks 6 and 15
     EXPECT_EQ(*entry.high, 15.0);
     EXPECT_FALSE(median_of({1, 2, 3, 4, 5}).low);
     EXPECT_EQ(*median_of({1, 2, 3, 4, 5, 6}).low, 1.0);  // 2 / 2^6 = 3.1 %
     EXPECT_EQ(*median_of({1, 2, 3, 4, 5, 6}).high, 6.0);
-    const Entry censored = median_of({1, 2, 3, 4, kNever, kNever});
+    const tables::Entry censored = median_of({1, 2, 3, 4, kNever, kNever});
     EXPECT_EQ(*censored.value, 3.5);
     EXPECT_FALSE(censored.high);
     EXPECT_FALSE(median_of({1, kNever, kNever}).value);
@@ -162,7 +162,7 @@ TEST(Median, IsInItsIntervalAsOftenAsPromised) {
     for (int trial = 0; trial < kTrials; ++trial) {
         std::vector<double> values;
         for (int i = 0; i < 15; ++i) values.push_back(static_cast<double>(random() >> 11) * 0x1p-53);
-        const Entry entry = median_of(values);
+        const tables::Entry entry = median_of(values);
         inside += *entry.low <= 0.5 && 0.5 <= *entry.high ? 1 : 0;
     }
     EXPECT_NEAR(inside, (1.0 - 2.0 * 576.0 / 32768.0) * kTrials, 50.0);  // ranks 4 and 12: sum of C(15, 0..3) = 576

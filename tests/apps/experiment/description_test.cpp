@@ -5,7 +5,7 @@
 #include "apps/experiment/column.hpp"
 #include "apps/experiment/experiment.hpp"
 #include "apps/experiment/run_setup.hpp"
-#include "tests/apps/data_set/test_files.hpp"
+#include "tests/apps/support/test_files.hpp"
 
 namespace nearpose::experiment {
 namespace {

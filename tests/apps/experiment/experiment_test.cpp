@@ -2,10 +2,10 @@
 
 #include <atomic>
 
-#include "apps/experiment/results_text.hpp"
 #include "apps/experiment/run_setup.hpp"
-#include "tests/apps/data_set/test_files.hpp"
-#include "tests/apps/program/tiny_scene.hpp"
+#include "apps/tables/results_text.hpp"
+#include "tests/apps/support/test_files.hpp"
+#include "tests/apps/support/tiny_scene.hpp"
 
 namespace nearpose::experiment {
 namespace {
@@ -45,8 +45,8 @@ class ExperimentTest : public testing::Test {
 
     // All that a run leaves but times.
     std::string outcome(const fs::path& out) const {
-        const Results results = results_of(description(), out);
-        write_results(out / "results.json", results);
+        const tables::Results results = results_of(description(), out);
+        tables::write_results(out / "results.json", results);
         std::string all = read_text(out / "results.json");
         for (const Unit& unit : units()) {
             for (const Cell& cell : unit.cells) {
@@ -180,15 +180,15 @@ TEST_F(ExperimentTest, TellsWhatIsThereAndWhatIsWrong) {
 }
 
 TEST(ResultsText, KeepsTheShapeOfTables) {
-    Results results{"name", "command", {}};
-    Table& table = results.tables.emplace_back();
+    tables::Results results{"name", "command", {}};
+    tables::Table& table = results.tables.emplace_back();
     table.name = "t";
     table.title = "A table";
     table.columns = {{"error", "mm", 1}, {"share", "%", 0}};
     table.rows = {{"a|b, \"c\"", 20, {{1.25, 1.0, 2.0}, {}}}};
-    const std::string markdown = markdown_of(results, {});
+    const std::string markdown = tables::markdown_of(results, {});
     EXPECT_NE(markdown.find("| a\\|b, \"c\" | 20 | 1.2 [1.0, 2.0] | - |"), std::string::npos) << markdown;
-    EXPECT_EQ(csv_of(results),
+    EXPECT_EQ(tables::csv_of(results),
               "table,row,runs,column,unit,value,low,high\n"
               "t,\"a|b, \"\"c\"\"\",20,error,mm,1.25,1,2\n"
               "t,\"a|b, \"\"c\"\"\",20,share,%,,,\n");

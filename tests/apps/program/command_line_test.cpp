@@ -1,7 +1,7 @@
 // How the program answers before it does anything.
 #include <gtest/gtest.h>
 
-#include "tests/apps/program/tiny_scene.hpp"
+#include "tests/apps/support/tiny_scene.hpp"
 
 namespace nearpose::program_tests {
 namespace {

@@ -2,14 +2,14 @@
 
 #include <filesystem>
 
-#include "apps/experiment/results.hpp"
 #include "apps/report/experiment_report.hpp"
 #include "apps/report/page.hpp"
 #include "apps/report/quantised.hpp"
 #include "apps/report/run_report.hpp"
 #include "apps/report/shown_mesh.hpp"
 #include "apps/report/text_forms.hpp"
-#include "tests/apps/program/tiny_scene.hpp"
+#include "apps/tables/results.hpp"
+#include "tests/apps/support/tiny_scene.hpp"
 
 namespace nearpose::report {
 namespace {
@@ -168,10 +168,10 @@ TEST(ExperimentReport, HoldsTablesAndCurves) {
     const std::filesystem::path folder =
         std::filesystem::path(testing::TempDir()) / "ExperimentReport.HoldsTablesAndCurves";
     std::filesystem::create_directories(folder);
-    experiment::Table table{"t", "</script>", "text", {{"error", "mm", 2}}, {}, {}};
+    tables::Table table{"t", "</script>", "text", {{"error", "mm", 2}}, {}, {}};
     table.rows.push_back({"piston", 20, {{0.5, 0.25, 0.75}}});
     table.curve_sets.push_back({"c", "distance", "error", true, {{"raycast", {{0.1, 3, 1.0, 0.5, 1.5, 2.0}}}}});
-    experiment::write_results(folder / "results.json", {"paper", "nearpose experiment", {table}});
+    tables::write_results(folder / "results.json", {"paper", "nearpose experiment", {table}});
     const Report report = experiment_report(folder / "results.json");
     EXPECT_TRUE(contains(report.json, "\"entries\":[[0.5,0.25,0.75]]")) << report.json;
     EXPECT_TRUE(contains(report.json, "\"percentile_75\":[1.5]")) << report.json;

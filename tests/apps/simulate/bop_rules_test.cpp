@@ -12,7 +12,7 @@
 
 #include "apps/data_set/bop_scene.hpp"
 #include "apps/data_set/png_file.hpp"
-#include "apps/simulate/parts.hpp"
+#include "apps/scenes/parts.hpp"
 #include "apps/simulate/simulate.hpp"
 #include "raycast/depth_renderer.hpp"
 

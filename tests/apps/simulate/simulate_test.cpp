@@ -17,7 +17,7 @@
 #include "apps/data_set/json_file.hpp"
 #include "apps/data_set/png_file.hpp"
 #include "apps/data_set/trajectory_tum.hpp"
-#include "apps/simulate/parts.hpp"
+#include "apps/scenes/parts.hpp"
 #include "raycast/depth_renderer.hpp"
 #include "raycast/mesh_loader.hpp"
 

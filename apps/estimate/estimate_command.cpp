@@ -1,0 +1,222 @@
+#include "apps/estimate/estimate_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <numbers>
+
+#include "apps/base/console.hpp"
+#include "apps/base/number_text.hpp"
+#include "apps/data_set/bop_models.hpp"
+#include "apps/data_set/pose_file.hpp"
+#include "apps/data_set/result_csv.hpp"
+#include "apps/estimate/estimate_options.hpp"
+#include "apps/estimate/estimate_outputs.hpp"
+#include "apps/part_model/model_symmetries.hpp"
+#include "apps/runs/estimator_setup.hpp"
+#include "apps/runs/run_folder.hpp"
+#include "core/estimator.hpp"
+
+namespace nearpose::program {
+namespace {
+
+struct Tally {
+    int frames = 0, unread = 0, seen = 0;
+};
+
+std::optional<data_set::ModelInfo> declared_info(const ModelOptions& model) {
+    const std::filesystem::path file = model.models / "models_info.json";
+    if (model.models.empty() || !std::filesystem::exists(file)) return std::nullopt;
+    const std::map<int, data_set::ModelInfo> models = data_set::read_models_info(file);
+    const auto found = models.find(model.object);
+    return found == models.end() ? std::nullopt : std::optional(found->second);
+}
+
+// The declared ones, and what the part may be mistaken for besides, which BOP's files do not hold.
+Symmetries with_near(const Symmetries& declared, const Symmetries& found) {
+    Symmetries symmetries = declared;
+    for (const Pose& turn : found.near)
+        if (!contains(declared, turn)) symmetries.near.push_back(turn);
+    return symmetries;
+}
+
+// The user is told which, where there are any.
+Symmetries choose_symmetries(const EstimateOptions& options, const Mesh& mesh, const SharedOptions& shared) {
+    if (options.symmetries == "none") return {};
+    const std::optional<data_set::ModelInfo> info = declared_info(options.model);
+    const Symmetries declared = info ? declared_symmetries(*info) : Symmetries{};
+    const bool take_declared = options.symmetries == "declared" || !declared.empty();
+    const Symmetries found = options.symmetries == "declared" ? Symmetries{} : find_symmetries(mesh);
+    const Symmetries symmetries = take_declared ? with_near(declared, found) : found;
+    if (!symmetries.empty() || !symmetries.near.empty()) {
+        const std::string source = take_declared ? "of models_info.json" : "found from the mesh";
+        print_notice("symmetries " + source + ": " + describe(symmetries), shared.quiet);
+    }
+    return symmetries;
+}
+
+Tolerance tolerance_of(const EstimateOptions& options) {
+    return {1e-3 * options.tolerance_mm, options.tolerance_deg * std::numbers::pi / 180.0};
+}
+
+PoseEstimator start_estimator(const EstimateOptions& options, const Mesh& mesh, const SharedOptions& shared) {
+    EstimatorSetup setup;
+    setup.method = options.method;
+    setup.views = options.views;
+    setup.particles = options.particles.value_or(setup.particles);
+    setup.adaptive = !options.particles;
+    setup.budget_s = 1e-3 * options.budget_ms;
+    setup.threads = options.threads;
+    setup.seed = options.seed;
+    setup.symmetries = choose_symmetries(options, mesh, shared);
+    setup.tolerance = tolerance_of(options);
+    PoseEstimator made = make_estimator(setup, make_view_generator(setup, mesh));
+    if (!options.initial_pose.empty()) {
+        made.reset(read_pose_file(options.initial_pose),
+                   {options.initial_sigma_deg * std::numbers::pi / 180.0, 1e-3 * options.initial_sigma_mm});
+    }
+    return made;
+}
+
+RunDescription run_description(const EstimateOptions& options, const FrameSource& source) {
+    return {(options.scene.empty() ? options.clouds : options.scene).string(),
+            model_file(options.model).string(),
+            options.views,
+            options.method,
+            source.scene_id(),
+            options.model.object,
+            options.particles.value_or(EstimatorSetup{}.particles),
+            !options.particles,
+            options.seed,
+            tolerance_of(options),
+            1e-3 * options.budget_ms};
+}
+
+// What the frames lack for what was asked, before hours are spent.
+void check_motion(const EstimateOptions& options, const FrameSource& source) {
+    if (options.outputs.trajectory.empty() || options.outputs.trajectory_frame != "world") return;
+    for (const FrameInfo& frame : source.frames()) {
+        if (frame.camera_from_world) return;
+    }
+    throw std::runtime_error(options.scene.string() +
+                             ": --trajectory-frame world needs cam_R_w2c and cam_t_w2c in scene_camera.json");
+}
+
+std::optional<Pose> control_of(const FrameSource& source, std::size_t index) {
+    if (index == 0) return std::nullopt;
+    const std::optional<Pose>& now = source.frames()[index].camera_from_world;
+    const std::optional<Pose>& before = source.frames()[index - 1].camera_from_world;
+    if (!now || !before) return std::nullopt;
+    return *now * before->inverse();
+}
+
+// What a frame that could be read had to offer.
+std::string why_unseen(const FrameData& data, const Observation& observation) {
+    if (observation.num_candidates() > 0) return std::to_string(observation.num_candidates()) + " measured points";
+    std::vector<float> depths_m;
+    for (std::size_t i = 0; i < data.depth.depth_m.size(); ++i) {
+        const bool wanted = !data.mask || data.mask->value[i] != 0;
+        if (wanted && data.depth.depth_m[i] > 0.0F) depths_m.push_back(data.depth.depth_m[i]);
+    }
+    for (const Eigen::Vector3f& point : data.points_in_camera) depths_m.push_back(point.z());
+    if (depths_m.empty()) return "nothing is measured in its mask";
+    const auto middle = depths_m.begin() + static_cast<std::ptrdiff_t>(depths_m.size() / 2);
+    std::nth_element(depths_m.begin(), middle, depths_m.end());
+    const SensorModel& sensor = observation.sensor();
+    return "no measurement lies in the image and at " + data_set::format_number(sensor.min_range_m) + " to " +
+           data_set::format_number(sensor.max_range_m) + " m; half are nearer than " +
+           data_set::format_fixed(*middle, 4) + " m: is the depth's scale right?";
+}
+
+void run_frame(const EstimateOptions& options, const SharedOptions& shared, const FrameSource& source,
+               std::size_t index, PoseEstimator& estimator, EstimateOutputs& outputs, Tally& tally) {
+    const FrameInfo& frame = source.frames()[index];
+    const std::string name = "frame " + std::to_string(frame.id);
+    FrameReport report{frame.id, frame.stamp_s, 0.0, {}};
+    FrameData data;
+    try {
+        data = source.load(index);
+    } catch (const std::exception& error) {
+        // An empty observation stands in, so that the control still moves the pose.
+        report.error = error.what();
+    }
+    const auto begin = std::chrono::steady_clock::now();
+    const Observation observation = observe_frame(frame, data);
+    const UpdateResult result =
+        estimator.update(observation, options.no_control ? std::nullopt : control_of(source, index));
+    report.time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+
+    const bool predicted = result.status == UpdateStatus::kPredicted;
+    const std::string consequence = predicted ? "; the prediction stands in" : "; there is no pose yet";
+    ++tally.frames;
+    if (!report.error.empty()) {
+        ++tally.unread;
+        print_error(name + ": " + report.error + consequence);
+    } else if (result.status != UpdateStatus::kEstimated) {
+        print_notice(name + ": the object is not seen (" + why_unseen(data, observation) + ")" + consequence,
+                     shared.quiet);
+    }
+    if (result.status == UpdateStatus::kEstimated) ++tally.seen;
+    outputs.append(frame, report, observation, result, estimator.particles());
+}
+
+int exit_code(const Tally& tally) {
+    if (interrupted()) {
+        print_error("interrupted after " + std::to_string(tally.frames) + " frames");
+        return kInterrupted;
+    }
+    if (tally.unread == tally.frames) {
+        print_error("none of the " + std::to_string(tally.frames) + " frames could be read");
+        return kFailure;
+    }
+    if (tally.seen == 0) {
+        print_error("the object was seen in none of the " + std::to_string(tally.frames) +
+                    " frames; check the model's unit, the depth's scale and the start");
+        return kFailure;
+    }
+    if (tally.unread == 0) return kSuccess;
+    print_error(std::to_string(tally.unread) + " of " + std::to_string(tally.frames) + " frames could not be read");
+    return kFramesUnread;
+}
+
+int estimate(const EstimateOptions& given, const SharedOptions& shared) {
+    check(given);
+    EstimateOptions options = given;
+    options.outputs = with_run_folder(given.outputs);
+    const std::unique_ptr<FrameSource> source = open_source(options);
+    check_motion(options, *source);
+    const Mesh mesh = load_model(options.model, shared);
+    PoseEstimator estimator = start_estimator(options, mesh, shared);
+    EstimateOutputs outputs(options.outputs, run_description(options, *source), mesh);
+    if (!options.outputs.run.empty()) write_run_record(options.outputs.run, options, source->scene_id());
+    if (!source->notice().empty()) print_notice(source->notice(), shared.quiet);
+    const std::string data_set_name =  // <data set>/test/<scene>
+        std::filesystem::absolute(options.scene / "../../.").lexically_normal().parent_path().filename().string();
+    if (const auto notice = data_set::bop_file_name_notice(given.outputs.out, data_set_name);
+        notice && !given.outputs.out.empty()) {
+        print_notice(*notice, shared.quiet);
+    }
+
+    Tally tally;
+    Progress progress("estimate", static_cast<int>(source->frames().size()), shared.quiet);
+    for (std::size_t index = 0; index < source->frames().size() && !interrupted(); ++index) {
+        run_frame(options, shared, *source, index, estimator, outputs, tally);
+        progress.step();
+    }
+    outputs.close();
+    return exit_code(tally);
+}
+
+}  // namespace
+
+void add_estimate_command(CLI::App& app, const SharedOptions& shared, Run& run) {
+    auto options = std::make_shared<EstimateOptions>();
+    CLI::App* command = app.add_subcommand("estimate", "Pose of a part in every frame of a scene");
+    add_estimate_options(*command, *options);
+    command->callback([options, &shared, &run] { run = [options, &shared] { return estimate(*options, shared); }; });
+}
+
+}  // namespace nearpose::program

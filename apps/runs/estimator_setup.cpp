@@ -1,0 +1,128 @@
+#include "apps/runs/estimator_setup.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "core/check.hpp"
+#include "optim/ceres_pose_solver.hpp"
+#include "raycast/embree_view_generator.hpp"
+#include "raycast/nested_spheres_generator.hpp"
+#include "raycast/raster_view_generator.hpp"
+#include "raycast/sphere_view_generator.hpp"
+
+namespace nearpose::program {
+
+const std::vector<std::string>& view_names() {
+    static const std::vector<std::string> names = {"raycast", "raster", "sphere", "spheres"};
+    return names;
+}
+
+const std::vector<std::string>& method_names() {
+    static const std::vector<std::string> names = {"default", "paper"};
+    return names;
+}
+
+const std::vector<std::string>& residual_names() {
+    static const std::vector<std::string> names = {"point", "plane"};
+    return names;
+}
+
+const std::vector<std::string>& parts_of_method() {
+    static const std::vector<std::string> names = {"nothing",   "fine_fit", "outline",    "depths", "pairs",
+                                                   "shortlist", "rivals",   "confidence", "doubts", "economy"};
+    return names;
+}
+
+std::shared_ptr<const ViewGenerator> make_view_generator(const EstimatorSetup& setup, const Mesh& mesh) {
+    if (setup.view_samples && setup.views != "raster") {
+        throw std::invalid_argument("samples of the surface belong to the views raster, not " + setup.views);
+    }
+    if (setup.views == "raycast") return std::make_shared<EmbreeViewGenerator>(mesh);
+    if (setup.views == "sphere") return std::make_shared<SphereViewGenerator>(mesh);
+    if (setup.views == "spheres") return std::make_shared<NestedSpheresGenerator>(mesh, nested_spheres());
+    if (setup.views != "raster") {
+        throw std::invalid_argument("views '" + setup.views + "': take raycast, raster, sphere or spheres");
+    }
+    RasterOptions options;
+    if (setup.view_samples) options.num_samples = *setup.view_samples;
+    check_option("samples of the surface", options.num_samples, 1, 1e8);
+    return std::make_shared<RasterViewGenerator>(mesh, options);
+}
+
+namespace {
+
+void leave_out(const std::string& part, Method& method) {
+    const auto& parts = parts_of_method();
+    if (std::find(parts.begin(), parts.end(), part) == parts.end())
+        throw std::invalid_argument("without '" + part +
+                                    "': take nothing, fine_fit, outline, depths, pairs, shortlist, rivals, confidence, "
+                                    "doubts or economy");
+    if (part != "nothing" && method.refinement.modes == 0)
+        throw std::invalid_argument("without " + part + ": only the default method has it");
+    if (part == "fine_fit") method.refinement.fusion = false;
+    if (part == "outline") method.refinement.outline = false;
+    if (part == "depths") method.deep_diameters = 0.0;
+    if (part == "shortlist") method.refinement.shortlist = 0;
+    if (part == "pairs") method.start = Start::kSurface;
+    if (part == "rivals") method.refinement.rivals = 0;
+    if (part == "confidence") method.refinement.confidence = false;
+    if (part == "doubts") method.refinement.doubts = false;
+    if (part == "economy") method.economy.on = false;
+}
+
+}  // namespace
+
+Method make_method(const EstimatorSetup& setup) {
+    if (setup.method != "default" && setup.method != "paper") {
+        throw std::invalid_argument("method '" + setup.method + "': take default or paper");
+    }
+    Method method = setup.method == "paper" ? method_paper() : method_default();
+    if (!setup.adaptive) method.economy.min_particles = method.economy.min_particles_unmeasured = setup.particles;
+    if (setup.rounds && setup.gradient) {
+        check_option("rounds (of the gradient step)", *setup.rounds, 1, 100);
+        method.step.rounds = *setup.rounds;
+    }
+    if (setup.consensus_draws) method.step.consensus_draws = *setup.consensus_draws;
+    if (setup.overlap) {
+        if (method.cost != Cost::kOverlapMse) throw std::invalid_argument("overlap belongs to the method paper");
+        method.scale_by_overlap = *setup.overlap;
+    }
+    if (!setup.gradient) {
+        if (setup.rounds.value_or(0) != 0 || setup.residual) {
+            throw std::invalid_argument("rounds and residual are of the gradient step, which is off");
+        }
+        method.step.rounds = 0;
+        method.start_step.rounds = 0;
+        method.refinement.modes = 0;
+    }
+    leave_out(setup.without, method);
+    validate(method);
+    return method;
+}
+
+std::shared_ptr<const PoseSolver> make_solver(const EstimatorSetup& setup) {
+    const bool paper = setup.method == "paper";
+    const std::string residual = setup.residual.value_or(paper ? "point" : "plane");
+    if (residual != "point" && residual != "plane") {
+        throw std::invalid_argument("residual '" + residual + "': take point or plane");
+    }
+    CeresSolverOptions options;
+    options.residual = residual == "point" ? ResidualKind::kPointToPoint : ResidualKind::kPointToPlane;
+    if (paper) options.loss = RobustLoss::kNone;
+    if (paper && residual == "point") options.min_pairs = 3;
+    return std::make_shared<CeresPoseSolver>(options);
+}
+
+PoseEstimator make_estimator(const EstimatorSetup& setup, std::shared_ptr<const ViewGenerator> views) {
+    EstimatorOptions options;
+    options.method = make_method(setup);
+    options.num_particles = setup.particles;
+    options.budget_s = setup.budget_s;
+    options.num_threads = setup.threads;
+    options.seed = setup.seed;
+    options.symmetries = setup.symmetries;
+    options.tolerance = setup.tolerance;
+    return PoseEstimator(std::move(views), make_solver(setup), options);
+}
+
+}  // namespace nearpose::program
