@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/start.hpp"
+#include "core/search/sampling.hpp"
 #include "core/update/assess.hpp"
 #include "core/update/choose.hpp"
 #include "core/update/fuse.hpp"

@@ -7,7 +7,7 @@
 #include "core/options.hpp"
 #include "core/pose_solver.hpp"
 #include "core/result.hpp"
-#include "core/time_budget.hpp"
+#include "core/update/time_budget.hpp"
 #include "core/update/belief.hpp"
 #include "core/update/object_model.hpp"
 #include "core/view_generator.hpp"

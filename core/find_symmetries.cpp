@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/self_similarity.hpp"
-#include "core/symmetry.hpp"
+#include "core/shape/symmetry.hpp"
 #include "core/symmetry_axes.hpp"
 
 namespace nearpose {

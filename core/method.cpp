@@ -1,6 +1,6 @@
 #include "core/method.hpp"
 
-#include "core/check.hpp"
+#include "core/base/check.hpp"
 
 namespace nearpose {
 

@@ -2,8 +2,8 @@
 // (of its box) where they scale with the part; nothing is tuned to one object.
 #pragma once
 
-#include "core/likelihood.hpp"
-#include "core/modes.hpp"
+#include "core/evidence/likelihood.hpp"
+#include "core/shape/modes.hpp"
 
 namespace nearpose {
 

@@ -1,6 +1,6 @@
 #include "core/options.hpp"
 
-#include "core/check.hpp"
+#include "core/base/check.hpp"
 
 namespace nearpose {
 

@@ -4,9 +4,9 @@
 #include <cstdint>
 
 #include "core/method.hpp"
-#include "core/symmetry.hpp"
-#include "core/track.hpp"
-#include "core/verdict.hpp"
+#include "core/shape/symmetry.hpp"
+#include "core/fit/track.hpp"
+#include "core/evidence/verdict.hpp"
 
 namespace nearpose {
 

@@ -3,11 +3,11 @@
 
 #include <vector>
 
-#include "core/gradient_step.hpp"
-#include "core/information.hpp"
-#include "core/likelihood.hpp"
-#include "core/modes.hpp"
-#include "core/verdict.hpp"
+#include "core/filter/gradient_step.hpp"
+#include "core/evidence/observability.hpp"
+#include "core/evidence/likelihood.hpp"
+#include "core/shape/modes.hpp"
+#include "core/evidence/verdict.hpp"
 
 namespace nearpose {
 

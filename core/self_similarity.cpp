@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/start.hpp"
+#include "core/search/sampling.hpp"
 
 namespace nearpose {
 namespace {

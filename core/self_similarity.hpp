@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/camera.hpp"
-#include "core/pose.hpp"
+#include "core/base/camera.hpp"
+#include "core/base/pose.hpp"
 #include "core/view_generator.hpp"
 
 namespace nearpose {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/self_similarity.hpp"
-#include "core/symmetry.hpp"
+#include "core/shape/symmetry.hpp"
 
 namespace nearpose {
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "core/camera.hpp"
-#include "core/depth_image.hpp"
-#include "core/pose.hpp"
+#include "core/base/camera.hpp"
+#include "core/base/depth_image.hpp"
+#include "core/base/pose.hpp"
 #include "raycast/embree_scene.hpp"
 
 namespace nearpose {

@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "core/camera.hpp"
-#include "core/pose.hpp"
+#include "core/base/camera.hpp"
+#include "core/base/pose.hpp"
 #include "raycast/mesh.hpp"
 
 namespace nearpose {

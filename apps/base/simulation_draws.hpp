@@ -1,7 +1,7 @@
 // What the simulation draws random numbers for: addresses of its streams beside the estimator's own.
 #pragma once
 
-#include "core/random.hpp"
+#include "core/base/random.hpp"
 
 namespace nearpose::simulate {
 

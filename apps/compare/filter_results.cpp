@@ -2,7 +2,7 @@
 #include <mutex>
 
 #include "apps/compare/filter_table.hpp"
-#include "core/parallel.hpp"
+#include "core/base/parallel.hpp"
 
 namespace nearpose::compare {
 

@@ -12,7 +12,7 @@
 #include "apps/runs/estimator_setup.hpp"
 #include "apps/scenes/parts.hpp"
 #include "apps/scenes/recording.hpp"
-#include "core/observation.hpp"
+#include "core/observation/observation.hpp"
 
 namespace nearpose::compare {
 

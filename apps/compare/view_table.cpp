@@ -6,8 +6,8 @@
 
 #include "apps/base/number_text.hpp"
 #include "apps/error_measures/run_summary.hpp"
-#include "core/check.hpp"
-#include "core/parallel.hpp"
+#include "core/base/check.hpp"
+#include "core/base/parallel.hpp"
 
 namespace nearpose::compare {
 namespace {

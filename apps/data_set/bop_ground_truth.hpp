@@ -5,7 +5,7 @@
 #include <map>
 #include <optional>
 
-#include "core/pose.hpp"
+#include "core/base/pose.hpp"
 
 namespace nearpose::data_set {
 

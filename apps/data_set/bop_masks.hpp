@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "apps/data_set/bop_scene.hpp"
-#include "core/depth_image.hpp"
+#include "core/base/depth_image.hpp"
 
 namespace nearpose::data_set {
 

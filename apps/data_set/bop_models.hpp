@@ -6,8 +6,8 @@
 #include <map>
 #include <vector>
 
-#include "core/pose.hpp"
-#include "core/symmetry.hpp"
+#include "core/base/pose.hpp"
+#include "core/shape/symmetry.hpp"
 
 namespace nearpose::data_set {
 

@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "core/camera.hpp"
-#include "core/depth_image.hpp"
-#include "core/pose.hpp"
+#include "core/base/camera.hpp"
+#include "core/base/depth_image.hpp"
+#include "core/base/pose.hpp"
 
 namespace nearpose::data_set {
 

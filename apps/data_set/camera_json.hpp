@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "apps/data_set/json_file.hpp"
-#include "core/camera.hpp"
+#include "core/base/camera.hpp"
 
 namespace nearpose::data_set {
 

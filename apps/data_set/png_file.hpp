@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/depth_image.hpp"
+#include "core/base/depth_image.hpp"
 
 namespace nearpose::data_set {
 

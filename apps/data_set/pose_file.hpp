@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "core/pose.hpp"
+#include "core/base/pose.hpp"
 
 namespace nearpose::program {
 

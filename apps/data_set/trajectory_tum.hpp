@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/base/file_io.hpp"
-#include "core/pose.hpp"
+#include "core/base/pose.hpp"
 
 namespace nearpose::data_set {
 

@@ -8,7 +8,7 @@
 #include "apps/base/file_io.hpp"
 #include "apps/base/number_text.hpp"
 #include "apps/data_set/json_file.hpp"
-#include "core/check.hpp"
+#include "core/base/check.hpp"
 
 NEARPOSE_EMBEDDED(close_stereo_json)
 NEARPOSE_EMBEDDED(d405_json)

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/depth_sensor/sensor_noise.hpp"
-#include "core/camera.hpp"
+#include "core/base/camera.hpp"
 
 namespace nearpose::simulate {
 

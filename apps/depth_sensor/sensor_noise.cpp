@@ -9,7 +9,7 @@
 
 #include "apps/base/simulation_draws.hpp"
 #include "apps/depth_sensor/noise_field.hpp"
-#include "core/check.hpp"
+#include "core/base/check.hpp"
 
 namespace nearpose::simulate {
 namespace {

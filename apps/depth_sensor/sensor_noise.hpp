@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/camera.hpp"
-#include "core/depth_image.hpp"
+#include "core/base/camera.hpp"
+#include "core/base/depth_image.hpp"
 #include "raycast/depth_renderer.hpp"
 
 namespace nearpose::simulate {

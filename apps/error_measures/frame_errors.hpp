@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "apps/error_measures/model_shape.hpp"
-#include "core/camera.hpp"
-#include "core/depth_image.hpp"
-#include "core/pose.hpp"
-#include "core/verdict.hpp"
+#include "core/base/camera.hpp"
+#include "core/base/depth_image.hpp"
+#include "core/base/pose.hpp"
+#include "core/evidence/verdict.hpp"
 
 namespace nearpose::evaluation {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "apps/data_set/bop_models.hpp"
-#include "core/point_index.hpp"
-#include "core/pose.hpp"
+#include "core/base/point_index.hpp"
+#include "core/base/pose.hpp"
 #include "raycast/mesh.hpp"
 
 namespace nearpose::evaluation {

@@ -7,7 +7,7 @@
 
 #include "apps/base/degrees.hpp"
 #include "apps/error_measures/interruptions.hpp"
-#include "core/random.hpp"
+#include "core/base/random.hpp"
 
 namespace nearpose::evaluation {
 namespace {

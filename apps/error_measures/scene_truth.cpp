@@ -5,7 +5,7 @@
 
 #include "apps/data_set/bop_ground_truth.hpp"
 #include "apps/data_set/bop_masks.hpp"
-#include "core/parallel.hpp"
+#include "core/base/parallel.hpp"
 
 namespace nearpose::evaluation {
 namespace {

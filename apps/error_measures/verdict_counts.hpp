@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/error_measures/frame_errors.hpp"
-#include "core/verdict.hpp"
+#include "core/evidence/verdict.hpp"
 
 namespace nearpose::evaluation {
 

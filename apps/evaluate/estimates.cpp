@@ -9,7 +9,7 @@
 #include "apps/data_set/bop_scene.hpp"
 #include "apps/data_set/json_file.hpp"
 #include "apps/data_set/result_csv.hpp"
-#include "core/parallel.hpp"
+#include "core/base/parallel.hpp"
 
 namespace nearpose::evaluation {
 namespace {

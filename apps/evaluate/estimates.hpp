@@ -9,7 +9,7 @@
 
 #include "apps/error_measures/frame_errors.hpp"
 #include "apps/error_measures/scene_truth.hpp"
-#include "core/verdict.hpp"
+#include "core/evidence/verdict.hpp"
 
 namespace nearpose::evaluation {
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/random.hpp"
+#include "core/base/random.hpp"
 #include "raycast/surface_samples.hpp"
 
 namespace nearpose::experiment {

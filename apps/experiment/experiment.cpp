@@ -11,7 +11,7 @@
 #include "apps/base/version.hpp"
 #include "apps/experiment/run_cells.hpp"
 #include "apps/experiment/run_setup.hpp"
-#include "core/parallel.hpp"
+#include "core/base/parallel.hpp"
 
 namespace nearpose::experiment {
 namespace {

@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "apps/depth_sensor/sensor_noise.hpp"
-#include "core/camera.hpp"
-#include "core/depth_image.hpp"
+#include "core/base/camera.hpp"
+#include "core/base/depth_image.hpp"
 
 namespace nearpose::simulate {
 

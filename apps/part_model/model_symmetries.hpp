@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/data_set/bop_models.hpp"
-#include "core/symmetry.hpp"
+#include "core/shape/symmetry.hpp"
 #include "raycast/mesh.hpp"
 
 namespace nearpose::program {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/camera.hpp"
-#include "core/pose.hpp"
+#include "core/base/camera.hpp"
+#include "core/base/pose.hpp"
 #include "raycast/embree_scene.hpp"
 
 namespace nearpose::pictures {

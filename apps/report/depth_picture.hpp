@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "core/depth_image.hpp"
-#include "core/observation.hpp"
-#include "core/pose.hpp"
+#include "core/base/depth_image.hpp"
+#include "core/observation/observation.hpp"
+#include "core/base/pose.hpp"
 #include "raycast/embree_scene.hpp"
 
 namespace nearpose::report {

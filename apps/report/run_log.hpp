@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/pose.hpp"
+#include "core/base/pose.hpp"
 
 namespace nearpose::report {
 

@@ -12,7 +12,7 @@
 #include "apps/report/shown_mesh.hpp"
 #include "apps/report/text_forms.hpp"
 #include "apps/runs/estimator_setup.hpp"
-#include "core/parallel.hpp"
+#include "core/base/parallel.hpp"
 
 namespace nearpose::report {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "core/check.hpp"
+#include "core/base/check.hpp"
 #include "optim/ceres_pose_solver.hpp"
 #include "raycast/embree_view_generator.hpp"
 #include "raycast/nested_spheres_generator.hpp"

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "apps/data_set/bop_scene.hpp"
-#include "core/camera.hpp"
-#include "core/observation.hpp"
-#include "core/pose.hpp"
+#include "core/base/camera.hpp"
+#include "core/observation/observation.hpp"
+#include "core/base/pose.hpp"
 
 namespace nearpose::program {
 

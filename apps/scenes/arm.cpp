@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "apps/base/simulation_draws.hpp"
-#include "core/check.hpp"
+#include "core/base/check.hpp"
 
 namespace nearpose::simulate {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/pose.hpp"
+#include "core/base/pose.hpp"
 
 namespace nearpose::simulate {
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "apps/base/simulation_draws.hpp"
-#include "core/check.hpp"
+#include "core/base/check.hpp"
 
 namespace nearpose::simulate {
 namespace {

@@ -9,7 +9,7 @@
 #include "apps/depth_sensor/sensor_noise.hpp"
 #include "apps/scenes/scenario.hpp"
 #include "apps/scenes/scene.hpp"
-#include "core/depth_image.hpp"
+#include "core/base/depth_image.hpp"
 
 namespace nearpose::simulate {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "core/check.hpp"
+#include "core/base/check.hpp"
 
 namespace nearpose::simulate {
 namespace {

@@ -1,7 +1,7 @@
 // Masks as a segmentation that is not perfect would draw them.
 #pragma once
 
-#include "core/depth_image.hpp"
+#include "core/base/depth_image.hpp"
 #include "raycast/depth_renderer.hpp"
 
 namespace nearpose::simulate {

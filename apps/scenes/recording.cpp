@@ -9,7 +9,7 @@
 #include "apps/scenes/parts.hpp"
 #include "apps/scenes/scene.hpp"
 #include "apps/scenes/surface_points.hpp"
-#include "core/check.hpp"
+#include "core/base/check.hpp"
 
 namespace nearpose::simulate {
 namespace {

@@ -14,9 +14,9 @@
 #include "apps/scenes/disturbance.hpp"
 #include "apps/scenes/mask_errors.hpp"
 #include "apps/scenes/scenario.hpp"
-#include "core/camera.hpp"
-#include "core/depth_image.hpp"
-#include "core/pose.hpp"
+#include "core/base/camera.hpp"
+#include "core/base/depth_image.hpp"
+#include "core/base/pose.hpp"
 #include "raycast/mesh.hpp"
 
 namespace nearpose::simulate {

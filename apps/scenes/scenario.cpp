@@ -5,7 +5,7 @@
 
 #include "apps/base/simulation_draws.hpp"
 #include "apps/scenes/scenario_paths.hpp"
-#include "core/check.hpp"
+#include "core/base/check.hpp"
 
 namespace nearpose::simulate {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "apps/data_set/trajectory_tum.hpp"
-#include "core/camera.hpp"
-#include "core/pose.hpp"
+#include "core/base/camera.hpp"
+#include "core/base/pose.hpp"
 #include "core/view_generator.hpp"
 
 namespace nearpose::simulate {

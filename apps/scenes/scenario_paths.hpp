@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "apps/scenes/scenario.hpp"
-#include "core/random.hpp"
+#include "core/base/random.hpp"
 
 namespace nearpose::simulate {
 

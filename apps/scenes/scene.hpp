@@ -7,9 +7,9 @@
 
 #include "apps/data_set/bop_writer.hpp"
 #include "apps/scenes/world.hpp"
-#include "core/camera.hpp"
-#include "core/depth_image.hpp"
-#include "core/pose.hpp"
+#include "core/base/camera.hpp"
+#include "core/base/depth_image.hpp"
+#include "core/base/pose.hpp"
 #include "raycast/depth_renderer.hpp"
 #include "raycast/embree_scene.hpp"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/scenes/scenario.hpp"
-#include "core/pose.hpp"
+#include "core/base/pose.hpp"
 #include "raycast/mesh.hpp"
 
 namespace nearpose::simulate {

@@ -16,7 +16,7 @@
 #include "apps/part_model/model_symmetries.hpp"
 #include "apps/scenes/parts.hpp"
 #include "apps/simulate/staged_folder.hpp"
-#include "core/parallel.hpp"
+#include "core/base/parallel.hpp"
 #include "raycast/mesh_loader.hpp"
 
 namespace nearpose::simulate {

@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "apps/scenes/recording.hpp"
-#include "core/symmetry.hpp"
+#include "core/shape/symmetry.hpp"
 #include "raycast/mesh.hpp"
 
 namespace nearpose::simulate {

@@ -7,7 +7,7 @@
 
 #include "apps/runs/estimator_setup.hpp"
 #include "apps/scenes/surface_points.hpp"
-#include "core/check.hpp"
+#include "core/base/check.hpp"
 #include "raycast/embree_view_generator.hpp"
 #include "raycast/nested_spheres_generator.hpp"
 #include "raycast/raster_view_generator.hpp"

@@ -6,8 +6,8 @@
 
 #include "apps/base/thread_time.hpp"
 #include "apps/error_measures/run_summary.hpp"
-#include "core/point_index.hpp"
-#include "core/random.hpp"
+#include "core/base/point_index.hpp"
+#include "core/base/random.hpp"
 
 namespace nearpose::compare {
 namespace {

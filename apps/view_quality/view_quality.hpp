@@ -3,8 +3,8 @@
 
 #include <span>
 
-#include "core/camera.hpp"
-#include "core/pose.hpp"
+#include "core/base/camera.hpp"
+#include "core/base/pose.hpp"
 #include "core/view_generator.hpp"
 #include "raycast/embree_scene.hpp"
 

@@ -1,7 +1,7 @@
 #include "core/update/assess.hpp"
 
-#include "core/fine_fit.hpp"
-#include "core/parallel.hpp"
+#include "core/fit/joint_fit.hpp"
+#include "core/base/parallel.hpp"
 #include "core/update/ray_grids.hpp"
 
 namespace nearpose {

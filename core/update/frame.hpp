@@ -6,12 +6,12 @@
 #include <list>
 #include <optional>
 
-#include "core/gradient_step.hpp"
-#include "core/observation.hpp"
+#include "core/filter/gradient_step.hpp"
+#include "core/observation/observation.hpp"
 #include "core/options.hpp"
 #include "core/pose_solver.hpp"
 #include "core/result.hpp"
-#include "core/time_budget.hpp"
+#include "core/update/time_budget.hpp"
 #include "core/update/object_model.hpp"
 
 namespace nearpose {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/fine_fit.hpp"
+#include "core/fit/joint_fit.hpp"
 #include "core/update/ray_grids.hpp"
 
 namespace nearpose {

@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "core/modes.hpp"
+#include "core/shape/modes.hpp"
 #include "core/options.hpp"
-#include "core/start_pairs.hpp"
+#include "core/search/pair_hypotheses.hpp"
 #include "core/view_generator.hpp"
 
 namespace nearpose {

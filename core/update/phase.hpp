@@ -14,7 +14,7 @@
 #pragma once
 
 #include "core/method.hpp"
-#include "core/verdict.hpp"
+#include "core/evidence/verdict.hpp"
 
 #include <cstdint>
 #include <optional>

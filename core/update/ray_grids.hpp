@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "core/camera.hpp"
+#include "core/base/camera.hpp"
 #include "core/update/frame.hpp"
 
 namespace nearpose {

@@ -1,6 +1,6 @@
 #include "core/update/refine.hpp"
 
-#include "core/parallel.hpp"
+#include "core/base/parallel.hpp"
 #include "core/update/ray_grids.hpp"
 
 namespace nearpose {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "core/parallel.hpp"
-#include "core/start.hpp"
+#include "core/base/parallel.hpp"
+#include "core/search/sampling.hpp"
 #include "core/update/move_particles.hpp"
 #include "core/update/ray_grids.hpp"
 

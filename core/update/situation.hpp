@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/gradient_step.hpp"
-#include "core/patches.hpp"
+#include "core/filter/gradient_step.hpp"
+#include "core/search/surfels.hpp"
 #include "core/update/belief.hpp"
 #include "core/update/phase.hpp"
 

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "core/pose.hpp"
+#include "core/base/pose.hpp"
 #include "optim/ceres_pose_solver.hpp"
 #include "optim/internal/normalised_pairs.hpp"
 

@@ -1,8 +1,8 @@
 // Points projected onto a depth buffer; shared by the generators that do not cast rays.
 #pragma once
 
-#include "core/camera.hpp"
-#include "core/pose.hpp"
+#include "core/base/camera.hpp"
+#include "core/base/pose.hpp"
 #include "core/view_generator.hpp"
 #include "raycast/surface_samples.hpp"
 

@@ -1,6 +1,6 @@
 // The fit of the chosen mode: five rounds of plain registration on all seen points against ours, which fits the
 // sensor's errors too and tells a covariance.
-#include "core/fine_fit.hpp"
+#include "core/fit/joint_fit.hpp"
 #include "core/method.hpp"
 #include "tests/bench/described.hpp"
 #include "tests/bench/fixture.hpp"

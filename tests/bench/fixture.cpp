@@ -6,8 +6,8 @@
 #include "apps/scenes/parts.hpp"
 #include "apps/scenes/recording.hpp"
 #include "core/method.hpp"
-#include "core/particles.hpp"
-#include "core/start.hpp"
+#include "core/filter/particles.hpp"
+#include "core/search/sampling.hpp"
 
 namespace nearpose::bench {
 namespace {

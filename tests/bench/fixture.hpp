@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "core/depth_image.hpp"
-#include "core/gradient_step.hpp"
-#include "core/observation.hpp"
-#include "core/pose.hpp"
+#include "core/base/depth_image.hpp"
+#include "core/filter/gradient_step.hpp"
+#include "core/observation/observation.hpp"
+#include "core/base/pose.hpp"
 #include "optim/ceres_pose_solver.hpp"
 #include "raycast/embree_view_generator.hpp"
 #include "raycast/mesh.hpp"

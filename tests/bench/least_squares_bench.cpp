@@ -1,5 +1,5 @@
 // The least squares step on the same pairs: one autodiff block a pair against our solver.
-#include "core/correspondence.hpp"
+#include "core/filter/association.hpp"
 #include "tests/bench/described.hpp"
 #include "tests/bench/fixture.hpp"
 #include "tests/bench/naive/least_squares.hpp"

@@ -1,5 +1,5 @@
 // How well a pose explains the image, the view given: the cost of the nearest neighbours against the cost per pixel.
-#include "core/likelihood.hpp"
+#include "core/evidence/likelihood.hpp"
 #include "tests/bench/described.hpp"
 #include "tests/bench/fixture.hpp"
 #include "tests/bench/naive/pipeline.hpp"

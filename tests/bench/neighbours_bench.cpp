@@ -1,5 +1,5 @@
 // Pairs for the views of a swarm: one FLANN call a point against our batched index and our projective association.
-#include "core/correspondence.hpp"
+#include "core/filter/association.hpp"
 #include "tests/bench/described.hpp"
 #include "tests/bench/fixture.hpp"
 #include "tests/bench/naive/pipeline.hpp"

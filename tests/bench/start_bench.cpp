@@ -1,6 +1,6 @@
 // The first frame, without any prior: 1,500 starts on the paper's sphere with two rounds of plain registration each
 // against our search.
-#include "core/start.hpp"
+#include "core/search/sampling.hpp"
 #include "tests/bench/described.hpp"
 #include "tests/bench/naive/pipeline.hpp"
 #include "tests/bench/tracking.hpp"

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/depth_image.hpp"
+#include "core/base/depth_image.hpp"
 #include "core/pose_solver.hpp"
 #include "core/view_generator.hpp"
 

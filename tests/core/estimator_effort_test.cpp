@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/random.hpp"
+#include "core/base/random.hpp"
 #include "tests/core/estimator_scene.hpp"
 
 namespace nearpose {

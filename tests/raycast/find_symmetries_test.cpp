@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/symmetry.hpp"
+#include "core/shape/symmetry.hpp"
 #include "raycast/embree_view_generator.hpp"
 #include "tests/raycast/shapes.hpp"
 

@@ -9,8 +9,8 @@
 #include <random>
 #include <string>
 
-#include "core/camera.hpp"
-#include "core/pose.hpp"
+#include "core/base/camera.hpp"
+#include "core/base/pose.hpp"
 #include "raycast/mesh.hpp"
 
 namespace nearpose::test {

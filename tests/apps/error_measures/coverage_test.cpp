@@ -8,7 +8,7 @@
 #include "apps/error_measures/run_summary.hpp"
 #include "apps/evaluate/error_curves.hpp"
 #include "apps/evaluate/summary_text.hpp"
-#include "core/random.hpp"
+#include "core/base/random.hpp"
 
 namespace nearpose::evaluation {
 namespace {

@@ -9,7 +9,7 @@
 #include "apps/data_set/png_file.hpp"
 #include "apps/error_measures/coverage.hpp"
 #include "apps/evaluate/error_curves.hpp"
-#include "core/random.hpp"
+#include "core/base/random.hpp"
 #include "tests/apps/support/test_files.hpp"
 
 namespace nearpose::evaluation {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/random.hpp"
+#include "core/base/random.hpp"
 
 namespace nearpose::evaluation {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "core/random.hpp"
+#include "core/base/random.hpp"
 
 namespace nearpose::evaluation {
 namespace {

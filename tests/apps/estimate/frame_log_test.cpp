@@ -5,7 +5,7 @@
 #include <Eigen/Cholesky>
 
 #include "apps/data_set/json_file.hpp"
-#include "core/random.hpp"
+#include "core/base/random.hpp"
 
 namespace nearpose::program {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/random.hpp"
+#include "core/base/random.hpp"
 
 namespace nearpose::simulate {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "core/random.hpp"
+#include "core/base/random.hpp"
 
 namespace nearpose::simulate {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "apps/data_set/png_file.hpp"
 #include "apps/scenes/parts.hpp"
-#include "core/parallel.hpp"
+#include "core/base/parallel.hpp"
 
 namespace nearpose::simulate {
 namespace {

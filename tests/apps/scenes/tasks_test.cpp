@@ -8,7 +8,7 @@
 #include "apps/scenes/recording.hpp"
 #include "apps/scenes/scene.hpp"
 #include "apps/scenes/surface_points.hpp"
-#include "core/random.hpp"
+#include "core/base/random.hpp"
 
 namespace nearpose::simulate {
 namespace {

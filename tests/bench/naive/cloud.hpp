@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "core/camera.hpp"
-#include "core/depth_image.hpp"
+#include "core/base/camera.hpp"
+#include "core/base/depth_image.hpp"
 
 namespace nearpose::bench::naive {
 

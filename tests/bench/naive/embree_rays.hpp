@@ -10,8 +10,8 @@
 #include <array>
 #include <vector>
 
-#include "core/camera.hpp"
-#include "core/pose.hpp"
+#include "core/base/camera.hpp"
+#include "core/base/pose.hpp"
 #include "raycast/mesh.hpp"
 
 namespace nearpose::bench::naive {

@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/pose.hpp"
-#include "core/random.hpp"
+#include "core/base/pose.hpp"
+#include "core/base/random.hpp"
 
 namespace nearpose::bench::naive {
 

@@ -2,9 +2,9 @@
 // point, sample consensus and one residual block a pair; weighed with the paper's overlap-scaled mean squared error.
 #pragma once
 
-#include "core/depth_image.hpp"
-#include "core/particles.hpp"
-#include "core/random.hpp"
+#include "core/base/depth_image.hpp"
+#include "core/filter/particles.hpp"
+#include "core/base/random.hpp"
 #include "tests/bench/naive/cloud.hpp"
 #include "tests/bench/naive/least_squares.hpp"
 #include "tests/bench/naive/single_ray_views.hpp"

@@ -1,0 +1,56 @@
+#include "core/evidence/observability.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string>
+
+namespace nearpose {
+namespace {
+
+// "x" where an axis of the object is within 15 degrees, else the direction's numbers.
+std::string axis_name(Eigen::Vector3d direction) {
+    constexpr double kCosine = 0.966;
+    direction.normalize();
+    Eigen::Index largest = 0;
+    direction.cwiseAbs().maxCoeff(&largest);
+    if (std::abs(direction[largest]) > kCosine) return std::string(1, "xyz"[largest]);
+    if (direction[largest] < 0.0) direction = -direction;
+    std::string text = "(";
+    for (int i = 0; i < 3; ++i) {  // std::to_chars knows no locale's comma
+        std::array<char, 32> digits{};
+        const auto end =
+            std::to_chars(digits.data(), digits.data() + digits.size(), direction[i], std::chars_format::fixed, 2);
+        text.append(digits.data(), end.ptr);
+        text += i < 2 ? " " : ")";
+    }
+    return text;
+}
+
+// What part of the motion is a turn decides its name; where both are large it is a turn about an axis far away.
+std::string name_of(const Twist& direction) {
+    const double turn = direction.head<3>().norm(), slide = direction.tail<3>().norm();
+    if (slide > 2.0 * turn) return "slides along " + axis_name(direction.tail<3>());
+    if (turn > 2.0 * slide) return "turns about " + axis_name(direction.head<3>());
+    return "turns about " + axis_name(direction.head<3>()) + " while it slides along " + axis_name(direction.tail<3>());
+}
+
+}  // namespace
+
+Observability observability_of(const Matrix6d& covariance, double radius_m, double weak_beyond_m) {
+    Twist scale;
+    scale << Eigen::Vector3d::Constant(radius_m), Eigen::Vector3d::Ones();
+    const Matrix6d scaled = scale.asDiagonal() * covariance * scale.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(0.5 * (scaled + scaled.transpose()));
+    Observability result;
+    for (int k = 0; k < 6; ++k) {  // the solver's are in ascending order
+        result.directions.col(k) = solver.eigenvectors().col(5 - k);
+        result.sigmas_m[k] = std::sqrt(std::max(0.0, solver.eigenvalues()[5 - k]));
+        if (result.sigmas_m[k] > weak_beyond_m) result.weak.push_back(name_of(result.directions.col(k)));
+    }
+    return result;
+}
+
+}  // namespace nearpose

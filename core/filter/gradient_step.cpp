@@ -1,0 +1,166 @@
+#include "core/filter/gradient_step.hpp"
+
+#include <chrono>
+
+namespace nearpose {
+namespace {
+
+class Timer {
+  public:
+    explicit Timer(double& seconds) : seconds_(seconds), start_(Clock::now()) {}
+    ~Timer() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+    Timer(const Timer&) = delete;
+    Timer& operator=(const Timer&) = delete;
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    double& seconds_;
+    Clock::time_point start_;
+};
+
+View cast(const Pose& pose, const StepContext& context, MovedParticle& moved) {
+    const Timer timer(moved.seconds.views);
+    View view = context.views.generate(pose, context.observed.camera);
+    moved.counts.view_points += static_cast<long>(view.size());
+    return view;
+}
+
+Correspondences find_pairs(const View& view, const StepContext& context, RandomStream random, MovedParticle& moved) {
+    const Timer timer(moved.seconds.association);
+    const GradientStep& step = context.step;
+    const Pose& pose = moved.camera_from_object;
+    const double diameter_m = context.views.extent().diameter_m();
+    const double gate_m = step.max_distance_diameters * diameter_m;
+    Correspondences pairs =
+        step.association == Association::kNearest
+            ? associate_nearest(view, pose, context.observation, gate_m)
+            : associate_projective(view, pose, context.observation, gate_m, step.extra_sigma_diameters * diameter_m);
+    moved.counts.pairs += static_cast<long>(pairs.size());
+    if (step.max_normal_angle_rad > 0.0) {
+        const std::size_t before = pairs.size();
+        pairs = reject_by_normal(pairs, pose, step.max_normal_angle_rad);
+        moved.counts.rejected_by_normal += static_cast<long>(before - pairs.size());
+    }
+    if (step.consensus_draws > 0) {
+        const std::size_t before = pairs.size();
+        pairs = reject_by_sample_consensus(
+            pairs, {step.consensus_draws, step.consensus_distance_diameters * diameter_m}, random);
+        moved.counts.rejected_by_consensus += static_cast<long>(before - pairs.size());
+    }
+    return pairs;
+}
+
+void solve(const Correspondences& pairs, const StepContext& context, MovedParticle& moved) {
+    const Timer timer(moved.seconds.solving);
+    const SolveResult solved = context.solver.solve(pairs, moved.camera_from_object);
+    ++moved.counts.solves;
+    moved.counts.solves_with_too_few_pairs += solved.status == SolveStatus::kTooFewPairs;
+    moved.counts.solves_not_usable += solved.status == SolveStatus::kNotUsable;
+    if (solved.status != SolveStatus::kConverged || !is_valid(solved.camera_from_object)) return;
+    moved.camera_from_object =
+        context.step.step_size == 1.0
+            ? solved.camera_from_object
+            : interpolate(moved.camera_from_object, solved.camera_from_object, context.step.step_size);
+}
+
+void weigh_by_pixels(const StepContext& context, const PixelCostOptions& options, MovedParticle& moved) {
+    const View view = cast(moved.camera_from_object, context, moved);
+    const Timer timer(moved.seconds.likelihood);
+    const PixelCost cost = pixel_cost(view, moved.camera_from_object, context.observed, options);
+    moved.cost = cost.cost;
+    moved.support = cost.support();
+    moved.gain = cost.gain;
+    moved.negative_log_likelihood = negative_log_likelihood(cost, options);
+}
+
+void weigh_by_overlap(const Correspondences& pairs, std::size_t num_view_points, const StepContext& context,
+                      MovedParticle& moved) {
+    const Timer timer(moved.seconds.likelihood);
+    const double gate_m = context.step.max_distance_diameters * context.views.extent().diameter_m();
+    const double sensor_m = context.observation.sensor().sigma_m(context.observation.mean_distance_m());
+    // As if the pairs were the whole view, m / n is 1.
+    const std::size_t m = context.scale_by_overlap ? num_view_points : pairs.size();
+    moved.cost = overlap_scaled_mse(pairs, moved.camera_from_object, m, gate_m);
+    moved.negative_log_likelihood = negative_log_likelihood(moved.cost, sensor_m, gate_m);
+}
+
+}  // namespace
+
+StageSeconds& StageSeconds::operator+=(const StageSeconds& other) {
+    views += other.views;
+    association += other.association;
+    solving += other.solving;
+    likelihood += other.likelihood;
+    return *this;
+}
+
+StepCounts& StepCounts::operator+=(const StepCounts& other) {
+    view_points += other.view_points;
+    pairs += other.pairs;
+    rejected_by_normal += other.rejected_by_normal;
+    rejected_by_consensus += other.rejected_by_consensus;
+    solves += other.solves;
+    solves_with_too_few_pairs += other.solves_with_too_few_pairs;
+    solves_not_usable += other.solves_not_usable;
+    return *this;
+}
+
+MovedParticle move_particle(const Pose& camera_from_object, const StepContext& context, const RandomStream& random) {
+    MovedParticle moved;
+    moved.camera_from_object = camera_from_object;
+    const View view = cast(camera_from_object, context, moved);
+    Correspondences pairs;
+    for (int round = 0; round < context.step.rounds; ++round) {
+        pairs = find_pairs(view, context, random, moved);
+        solve(pairs, context, moved);
+    }
+    // Without a step there are no pairs yet, and the overlap cost is of pairs.
+    if (context.step.rounds == 0 && context.cost == Cost::kOverlapMse) pairs = find_pairs(view, context, random, moved);
+    if (context.cost == Cost::kPixels)
+        weigh_by_pixels(context, context.pixel_cost, moved);
+    else
+        weigh_by_overlap(pairs, view.size(), context, moved);
+    return moved;
+}
+
+MovedParticle refine_mode(const Pose& camera_from_object, const StepContext& context, const Refinement& refinement) {
+    MovedParticle moved;
+    moved.camera_from_object = camera_from_object;
+    GradientStep step = context.step;
+    step.association = Association::kProjective;
+    step.extra_sigma_diameters = refinement.first_extra_sigma_diameters;
+    const double diameter_m = context.views.extent().diameter_m();
+    const double sensor_m = context.observation.sigma_m(context.observation.mean_distance_m());
+    const RandomStream unused(0, 0, 0, RandomPurpose::kSampleConsensus);
+    View view;
+    for (int round = 0; round < refinement.rounds; ++round) {
+        // A pair farther off than a few of its sigmas is not the same surface.
+        constexpr double kGateSigmas = 5.0;
+        constexpr int kRoundsPerView = 2;  // one moves the pose less than the view's rays are apart
+        step.max_distance_diameters = kGateSigmas * (step.extra_sigma_diameters + sensor_m / diameter_m);
+        const StepContext sharper{context.views, context.solver, context.observation, context.observed,
+                                  step,          context.cost,   context.pixel_cost,  context.scale_by_overlap};
+        if (round % kRoundsPerView == 0) view = cast(moved.camera_from_object, context, moved);
+        solve(find_pairs(view, sharper, unused, moved), sharper, moved);
+        step.extra_sigma_diameters *= 0.5;
+    }
+    const Timer timer(moved.seconds.likelihood);
+    const PixelCost cost = refined_cost(moved.camera_from_object, context, refinement);
+    moved.cost = cost.cost;
+    moved.support = cost.support();
+    moved.gain = cost.gain;
+    moved.agreement = cost.agreement();
+    moved.log_evidence = log_evidence(cost, context.pixel_cost, refinement.rays_per_evidence);
+    return moved;
+}
+
+PixelCost refined_cost(const Pose& camera_from_object, const StepContext& context, const Refinement& refinement) {
+    PixelCostOptions options = context.pixel_cost;
+    options.extra_sigma_m = refinement.cost_sigma_diameters * context.views.extent().diameter_m();
+    options.outline_sigma_m = options.extra_sigma_m;
+    options.with_outline = refinement.outline;
+    const View view = context.views.generate(camera_from_object, context.observed.camera);
+    return pixel_cost(view, camera_from_object, context.observed, options);
+}
+
+}  // namespace nearpose

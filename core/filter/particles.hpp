@@ -1,0 +1,57 @@
+// The particle filter over SE(3): control propagation, diffusion, log-weights, effective sample size, resampling, MAP.
+// Free functions over a ParticleSet, in the order of the paper's algorithm.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "core/base/pose.hpp"
+
+namespace nearpose {
+
+// Parallel arrays. `weights` are the paper's w: negative log-weights up to an offset, so small is good and the MAP is
+// the minimum; they need no normalisation.
+struct ParticleSet {
+    std::vector<Pose> poses;  // camera_from_object
+    std::vector<double> weights;
+
+    int size() const { return static_cast<int>(poses.size()); }
+};
+
+// Standard deviations of the diffusion N(0, Sigma), about the object's centre, in object axes.
+struct Diffusion {
+    double sigma_rotation_rad = 0.0;
+    double sigma_translation_m = 0.0;
+};
+
+// The control: each particle moves with the camera, pose <- now_from_before * pose, where now_from_before maps camera
+// coordinates of the frame before to those of this frame.
+void propagate(ParticleSet& particles, const Pose& now_from_before);
+
+// theta <- theta * N(0, Sigma), a turn and a shift about `centre_in_object`: about a far origin a turn would throw the
+// object aside. Particle i draws from the stream (seed, step, i).
+void diffuse(ParticleSet& particles, const Diffusion& diffusion, const Eigen::Vector3d& centre_in_object,
+             std::uint64_t seed, std::uint64_t step);
+
+// w <- (w + epsilon) / 2, epsilon the negative log-likelihood of the present observation: a sum in log space whose
+// halving keeps it in range and forgets the past at a rate of one half a frame.
+void update_weights(ParticleSet& particles, const std::vector<double>& negative_log_likelihoods);
+
+// 1 / sum(p_i^2) over the normalised probabilities p_i ~ exp(-w_i), in 1..N; computed about the smallest w, so that
+// nothing under- or overflows. 0 for an empty set.
+double effective_sample_size(const std::vector<double>& weights);
+
+// Systematic resampling (one uniform draw, `count` even pointers): particle i is taken count * p_i times, rounded up or
+// down. Weights of the copies become equal (0).
+ParticleSet systematic_resample(const ParticleSet& particles, int count, std::uint64_t seed, std::uint64_t step);
+
+// KLD sampling: so many particles keep the Kullback-Leibler distance between the swarm and a posterior that fills
+// `num_cells` cells below `max_error` with 99 % probability (Fox 2003, the Wilson-Hilferty approximation of the
+// chi-square quantile). 0 for a single cell, which any number describes.
+int kld_sample_size(int num_cells, double max_error);
+
+// Index of the smallest weight, the first of equals; -1 for an empty set.
+int map_index(const std::vector<double>& weights);
+
+}  // namespace nearpose

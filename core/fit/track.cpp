@@ -1,0 +1,99 @@
+#include "core/fit/track.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace nearpose {
+namespace {
+
+// The twist about the centre that takes `from` to `to` (inverse of perturb_about).
+Twist twist_about(const Pose& from, const Pose& to, const Eigen::Vector3d& centre_in_object) {
+    Twist twist;
+    twist.head<3>() = log(Pose{from.rotation.conjugate() * to.rotation, Eigen::Vector3d::Zero()}).head<3>();
+    twist.tail<3>() = from.rotation.conjugate() * (to * centre_in_object - from * centre_in_object);
+    return twist;
+}
+
+// Of the twist about the centre, from an error of the camera's motion: rotation and translation in camera axes.
+Matrix6d motion_covariance(const Pose& camera_from_object, const Eigen::Vector3d& centre_in_object, double rotation_rad,
+                           double translation_m) {
+    const Eigen::Matrix3d object_from_camera = camera_from_object.rotation_matrix().transpose();
+    Matrix6d map = Matrix6d::Zero();
+    map.topLeftCorner<3, 3>() = object_from_camera;
+    map.bottomLeftCorner<3, 3>() = -object_from_camera * skew(camera_from_object * centre_in_object);
+    map.bottomRightCorner<3, 3>() = object_from_camera;
+    Twist variances;
+    variances << Eigen::Vector3d::Constant(rotation_rad * rotation_rad),
+        Eigen::Vector3d::Constant(translation_m * translation_m);
+    return map * variances.asDiagonal() * map.transpose();
+}
+
+void add_to_pose(Track& track, double rotation_rad, double translation_m) {
+    for (int i = 0; i < 3; ++i) {
+        track.covariance(i, i) += rotation_rad * rotation_rad;
+        track.covariance(3 + i, 3 + i) += translation_m * translation_m;
+    }
+}
+
+// The object's own motion is what is left of the correction once the prediction's spread is taken off.
+void learn_motion(const Track& predicted, Track& corrected, bool rejected, const Eigen::Vector3d& centre) {
+    constexpr double kKept = 0.7;  // a frame: three frames of standing still are believed
+    const Twist moved = twist_about(predicted.camera_from_object, corrected.camera_from_object, centre);
+    const auto learned = [&](double before, const Eigen::Vector3d& part, double expected) {
+        const double unexplained = std::max(0.0, part.squaredNorm() - (rejected ? 0.0 : expected));
+        return std::sqrt(rejected ? std::max(before * before, unexplained)
+                                  : kKept * before * before + (1.0 - kKept) * unexplained);
+    };
+    ObjectMotion& motion = corrected.object_motion;
+    motion.rotation_rad =
+        learned(motion.rotation_rad, moved.head<3>(), predicted.covariance.diagonal().head<3>().sum());
+    motion.translation_m =
+        learned(motion.translation_m, moved.tail<3>(), predicted.covariance.diagonal().segment<3>(3).sum());
+}
+
+}  // namespace
+
+void move_track(Track& track, const std::optional<Pose>& now_from_before, const MotionNoise& noise,
+                const Eigen::Vector3d& centre_in_object) {
+    double rotation_rad = noise.unknown_rotation_rad, translation_m = noise.unknown_translation_m;
+    if (now_from_before) {
+        track.camera_from_object = *now_from_before * track.camera_from_object;
+        const Twist motion = log(*now_from_before);
+        rotation_rad = std::hypot(noise.sigma_rotation_rad, noise.fraction * motion.head<3>().norm());
+        translation_m = std::hypot(noise.sigma_translation_m, noise.fraction * motion.tail<3>().norm());
+    }
+    track.covariance += motion_covariance(track.camera_from_object, centre_in_object, rotation_rad, translation_m);
+    add_to_pose(track, track.object_motion.rotation_rad, track.object_motion.translation_m);
+}
+
+bool contradicts(const Track& predicted, const FineFit& observed, const Eigen::Vector3d& centre_in_object) {
+    constexpr double kRejectedBeyond = 22.46;  // 99.9 % of chi-square with 6 degrees of freedom
+    const Twist apart = twist_about(observed.camera_from_object, predicted.camera_from_object, centre_in_object);
+    const Matrix6d sum = predicted.covariance + observed.covariance;
+    return apart.dot(sum.llt().solve(apart)) > kRejectedBeyond;
+}
+
+Track correct_track(const Track& predicted, const FineFit& observed, const Eigen::Vector3d& centre_in_object) {
+    const Twist to_prediction =
+        twist_about(observed.camera_from_object, predicted.camera_from_object, centre_in_object);
+    const bool rejected = contradicts(predicted, observed, centre_in_object);
+    Track track{observed.camera_from_object, observed.covariance, predicted.object_motion,
+                observed.constant_covariance};
+    if (!rejected) {
+        // v^T P v = d and v^T R v = 1 for the columns v of V: in V's dual basis both are diagonal.
+        const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6d> solver(predicted.covariance, observed.covariance);
+        const Matrix6d V = solver.eigenvectors();
+        const Matrix6d dual = V.transpose().inverse();
+        const Eigen::Array<double, 6, 1> d = solver.eigenvalues().array().max(1e-12);
+        const Eigen::Array<double, 6, 1> of_prediction = 1.0 / (1.0 + d);  // its share of the mean
+        const Eigen::Array<double, 6, 1> variances = 0.5 * (d * of_prediction + d.min(1.0));
+        const Twist shift = dual * (of_prediction * (V.transpose() * to_prediction).array()).matrix();
+        track.camera_from_object = perturb_about(observed.camera_from_object, shift, centre_in_object);
+        track.covariance = dual * variances.matrix().asDiagonal() * dual.transpose();
+    }
+    learn_motion(predicted, track, rejected, centre_in_object);
+    return track;
+}
+
+}  // namespace nearpose

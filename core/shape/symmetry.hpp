@@ -1,0 +1,52 @@
+// Symmetries of a part: turns after which a depth camera sees the same.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/base/pose.hpp"
+#include "core/view_generator.hpp"
+
+namespace nearpose {
+
+// A full turn about an axis that changes nothing.
+struct AxisOfRevolution {
+    Eigen::Vector3d axis_in_object = Eigen::Vector3d::UnitZ();     // unit
+    Eigen::Vector3d offset_in_object_m = Eigen::Vector3d::Zero();  // a point of the axis
+};
+
+// The part looks the same after every product of a discrete turn and turns about the axes of revolution; of discrete
+// turns that such turns make equal one is listed.
+struct Symmetries {
+    std::vector<Pose> discrete;  // object_from_object; the identity is not listed
+    std::vector<AxisOfRevolution> continuous;
+    std::vector<Pose> near;  // turns after which all but a detail is the same: what the part may be mistaken for
+
+    bool empty() const { return discrete.empty() && continuous.empty(); }
+};
+
+// Looks for them in views of the model from all around. `resolution_m` is what the sensor can tell apart: surfaces that
+// lie closer count as the same, and so do details narrower than that. The views must be exact (ray casting); those of
+// rasterised samples have holes, which are no symmetry. Throws std::invalid_argument where `resolution_m` is not
+// positive.
+Symmetries find_symmetries(const ViewGenerator& views, double resolution_m);
+
+// The turn about an axis: object_from_object.
+Pose turn_about(const AxisOfRevolution& axis, double angle_rad);
+
+// Two turns of a rigid part that rotate alike are one: a finite part has no symmetry that shifts it.
+bool same_turn(const Pose& a, const Pose& b);
+
+// Whether `turn` (object_from_object) is among the symmetries or a product of one with a turn about an axis of
+// revolution; so is the identity.
+bool contains(const Symmetries& symmetries, const Pose& turn);
+
+// All products of `generators`, without the identity and each once, as long as there are at most `max_count`.
+std::vector<Pose> closed_under_products(const std::vector<Pose>& generators, int max_count);
+
+// Of all poses in which the part looks as in `camera_from_object` the one nearest to `reference`: by the angle between
+// the rotations, then by the distance of the centres.
+Pose nearest_equivalent(const Pose& camera_from_object, const Pose& reference, const Symmetries& symmetries,
+                        const Eigen::Vector3d& centre_in_object);
+
+}  // namespace nearpose

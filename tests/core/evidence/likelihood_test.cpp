@@ -1,0 +1,245 @@
+#include "core/evidence/likelihood.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "tests/core/analytic_part.hpp"
+
+namespace nearpose {
+namespace {
+
+const test::BoxViewGenerator kPart(test::asymmetric_part());
+const PinholeCamera kCamera = test::small_camera();
+const Pose kTruth{Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX())), {0.0, 0, 0.45}};
+const PixelGrid kGrid = grid_over({0, 0, 160, 120}, 3000);
+
+PixelCost cost_at(const Pose& pose, const Observation& observation, const PixelCostOptions& options = {}) {
+    const ObservedGrid observed = observe(observation, kGrid);
+    return pixel_cost(kPart.generate(pose, observed.camera), pose, observed, options);
+}
+
+Observation observe_part(bool with_mask, float wall_m = 0.8F) {
+    Mask mask;
+    const DepthImage image = test::render(kPart, kTruth, kCamera, wall_m, &mask);
+    return make_observation(image, kCamera, with_mask ? std::optional(mask) : std::nullopt);
+}
+
+Pose shifted(double x, double y, double z) {
+    Pose pose = kTruth;
+    pose.translation += Eigen::Vector3d(x, y, z);
+    return pose;
+}
+
+TEST(OverlapMse, IsThePapersFormula) {
+    Correspondences pairs;
+    for (const double error : {0.001, 0.002, 0.003}) {
+        pairs.points_in_object.emplace_back(0, 0, 0);
+        pairs.points_in_camera.emplace_back(static_cast<float>(error), 0, 0);
+    }
+    // m / n * MSE = 12 / 3 * (1 + 4 + 9) / 3 mm^2
+    EXPECT_NEAR(overlap_scaled_mse(pairs, Pose::identity(), 12, 0.03), 4.0 * 14.0 / 3.0 * 1e-6, 1e-12);
+}
+
+TEST(OverlapMse, NothingMatchedIsWorseThanAnythingMatched) {
+    Correspondences one;
+    one.points_in_object.emplace_back(0, 0, 0);
+    one.points_in_camera.emplace_back(0.03F, 0, 0);  // at the gate
+    EXPECT_GT(overlap_scaled_mse({}, Pose::identity(), 100, 0.03),
+              overlap_scaled_mse(one, Pose::identity(), 100, 0.03));
+}
+
+TEST(PixelCost, IsZeroAtTheTruthAndCountsEveryPixel) {
+    const PixelCost cost = cost_at(kTruth, observe_part(true));
+    EXPECT_LT(cost.cost, 1e-4);
+    EXPECT_EQ(cost.agreeing, cost.judged);
+    EXPECT_EQ(cost.missing_model + cost.model_in_front + cost.model_behind, 0);
+}
+
+TEST(PixelCost, ASmallErrorInDepthCostsItsSquare) {
+    const Observation observation = observe_part(true);
+    const double sigma_m = observation.sigma_m(0.45);
+    // Seen face on, moved by half a sigma: r^2 / truncation^2 = 0.25 / 9, but for the towers' own distance and sigma.
+    // At the outline a few rays meet another surface.
+    const PixelCost cost = cost_at(shifted(0, 0, 0.5 * sigma_m), observation);
+    const int others = cost.judged - cost.agreeing;
+    EXPECT_LT(others, 0.05 * cost.judged);
+    EXPECT_NEAR((cost.cost * cost.judged - others) / cost.agreeing, 0.25 / 9.0, 0.006);
+}
+
+TEST(PixelCost, ModelOverSeenBackgroundAndMissingModelCostFully) {
+    const Observation observation = observe_part(true);
+    const PixelCost cost = cost_at(shifted(0.3, 0, 0), observation);  // beside the object
+    EXPECT_GT(cost.model_in_front, 50);
+    EXPECT_GT(cost.missing_model, 50);
+    EXPECT_NEAR(cost.cost, 1.0, 1e-9);
+}
+
+TEST(PixelCost, ModelBehindTheBackgroundMayBeHidden) {
+    const Observation observation = observe_part(true);
+    const Pose behind_wall = shifted(0.5, 0, 1.0);
+    const PixelCost cost = cost_at(behind_wall, observation);
+    EXPECT_GT(cost.model_behind, 15);
+    const double hidden = 0.3 * cost.model_behind, missing = cost.missing_model;
+    EXPECT_NEAR(cost.cost, (hidden + missing) / cost.judged, 1e-9);
+}
+
+TEST(PixelCost, MissingDepthSaysNothing) {
+    DepthImage image = test::render(kPart, kTruth, kCamera, 0.8F, nullptr);
+    Mask mask;
+    test::render(kPart, kTruth, kCamera, 0.8F, &mask);
+    for (std::size_t pixel = 0; pixel < image.depth_m.size(); pixel += 2) image.depth_m[pixel] = 0.0F;
+    const PixelCost holes = cost_at(kTruth, make_observation(image, kCamera, mask));
+    EXPECT_LT(holes.cost, 1e-4);
+    std::fill(image.depth_m.begin(), image.depth_m.end(), 0.0F);
+    const PixelCost nothing = cost_at(kTruth, make_observation(image, kCamera, mask));
+    EXPECT_EQ(nothing.judged, 0);
+    EXPECT_EQ(nothing.cost, 1.0);
+}
+
+TEST(PixelCost, WithoutAMaskTheTruthIsStillTheMinimum) {
+    const Observation observation = observe_part(false);
+    const double truth = cost_at(kTruth, observation).cost;
+    for (const auto& [x, y, z] : {std::array{0.01, 0.0, 0.0},
+                                  {0.0, 0.02, 0.0},
+                                  {0.0, 0.0, 0.01},
+                                  {0.0, 0.0, -0.01},
+                                  {0.3, 0.0, 0.0},
+                                  {0.0, 0.0, 1.0}})
+        EXPECT_LT(truth, cost_at(shifted(x, y, z), observation).cost) << x << " " << y << " " << z;
+}
+
+TEST(PixelCost, TurnedByHalfATurnIsWorse) {
+    for (const bool with_mask : {true, false}) {
+        const Observation observation = observe_part(with_mask);
+        const Pose turned = kTruth * exp((Twist() << 0, 0, M_PI, 0, 0, 0).finished());
+        EXPECT_GT(cost_at(turned, observation).cost, cost_at(kTruth, observation).cost + 0.05);
+    }
+}
+
+TEST(PixelCost, WithoutAMaskModelDeepBeforeWhatIsMeasuredCostsMore) {
+    const Observation open = observe_part(false), segmented = observe_part(true);
+    const Pose beside = shifted(0.2, 0, 0);  // before the wall, which is 0.35 to 0.44 m behind
+    PixelCostOptions options;
+    const PixelCost shallow = cost_at(beside, open, options);
+    ASSERT_GT(shallow.model_in_front, 100);
+    const auto more_than_shallow = [&](double deep_m) {
+        options.deep_m = deep_m;
+        const PixelCost cost = cost_at(beside, open, options);
+        EXPECT_EQ(cost.model_in_front, shallow.model_in_front);
+        return cost.cost * cost.judged - shallow.cost * shallow.judged;
+    };
+    const double all = (options.deep_cost - 1.0) * shallow.model_in_front;
+    EXPECT_NEAR(more_than_shallow(0.45), 0.0, 1e-9) << "none is so deep";
+    EXPECT_NEAR(more_than_shallow(0.05), all, 0.02 * all) << "nearly all are twice as deep";
+    const double some = more_than_shallow(0.25);  // by 0.4 to 0.76 of it
+    EXPECT_GT(some, 0.4 * all);
+    EXPECT_LT(some, 0.76 * all);
+    EXPECT_EQ(cost_at(beside, segmented, options).cost, cost_at(beside, segmented).cost) << "the mask tells";
+}
+
+// A plate before most of the part, as a gripper's palm: of all poses in which a face lies in the plate none explains as
+// much as the truth, since what reaches beyond the plate would hide what is seen there.
+TEST(PixelCost, APartBehindAPlateExplainsMoreThanOneLaidIntoThePlate) {
+    constexpr float kPlate_m = 0.30F;
+    DepthImage image = test::render(kPart, kTruth, kCamera, 0.8F, nullptr);
+    for (int v = 20; v < 100; ++v)
+        for (int u = 10; u < 84; ++u) image.depth_m[static_cast<std::size_t>(v) * image.width + u] = kPlate_m;
+    const Observation observation = make_observation(image, kCamera, std::nullopt);
+    PixelCostOptions options;
+    const auto best_on_plate = [&] {
+        double best = 0.0;
+        for (const double front_m : {0.36, 0.40, 0.42})  // of the towers and of the base
+            for (double x = -0.1; x < 0.1; x += 0.01)
+                for (double y = -0.06; y < 0.07; y += 0.02)
+                    best = std::max(best, cost_at(shifted(x, y, kPlate_m - front_m), observation, options).gain);
+        return best;
+    };
+    EXPECT_GT(best_on_plate(), cost_at(kTruth, observation, options).gain) << "or the plate is no trap";
+    options.deep_m = 0.05 * kPart.extent().diameter_m();
+    EXPECT_LT(best_on_plate(), cost_at(kTruth, observation, options).gain);
+}
+
+// However large it is.
+TEST(PixelCost, AFaceLaidIntoALargerPlaneExplainsNothing) {
+    constexpr float kWall_m = 0.3F;
+    const Observation wall = make_observation(
+        DepthImage{kCamera.width, kCamera.height,
+                   std::vector<float>(static_cast<std::size_t>(kCamera.width * kCamera.height), kWall_m)},
+        kCamera, {});
+    const View view = kPart.generate(kTruth, kCamera);
+    float nearest_m = 1.0F;
+    for (const Eigen::Vector3f& point : view.points_in_object)
+        nearest_m = std::min(nearest_m, static_cast<float>((kTruth * point.cast<double>()).z()));
+    PixelCostOptions options;
+    options.with_outline = true;
+    const PixelCost laid = cost_at(shifted(0, 0, kWall_m - nearest_m), wall, options);
+    EXPECT_GT(laid.agreeing, 50);
+    EXPECT_GT(laid.flush_share(), 0.9);
+    const double within = laid.gain - (options.unexplained_cost - options.outline_cost) * laid.flush;
+    EXPECT_LT(within, 0.25 * options.unexplained_cost * laid.agreeing);
+    EXPECT_LT(laid.gain, 0.0);
+    const PixelCost truth = cost_at(kTruth, observe_part(false), options);
+    EXPECT_LT(truth.flush_share(), 0.1);
+    EXPECT_GT(truth.gain, 0.45 * truth.agreeing) << "an object that stands out keeps what it explains";
+}
+
+// Of samples five times as dense as the pixels the nearest in each, as a rasteriser sees them; with `every` above 1
+// only in one of so many pixels.
+View rasterised(const Pose& camera_from_object, const PinholeCamera& camera, int every) {
+    constexpr int kDensity = 5;
+    const PinholeCamera fine{kDensity * camera.width, kDensity * camera.height,   kDensity * camera.fx,
+                             kDensity * camera.fy,    kDensity * camera.cx + 2.0, kDensity * camera.cy + 2.0};
+    const View samples = kPart.generate(camera_from_object, fine);
+    std::map<int, std::pair<double, std::size_t>> nearest;  // depth [m] and sample, by pixel
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+        const int u = samples.pixels[k] % fine.width / kDensity, v = samples.pixels[k] / fine.width / kDensity;
+        const double depth_m = (camera_from_object * samples.points_in_object[k].cast<double>()).z();
+        const auto [entry, is_new] = nearest.try_emplace(v * camera.width + u, depth_m, k);
+        if (!is_new && depth_m < entry->second.first) entry->second = {depth_m, k};
+    }
+    View view;
+    for (const auto& [pixel, sample] : nearest) {
+        if ((pixel % camera.width + pixel / camera.width) % every != 0) continue;
+        view.points_in_object.push_back(samples.points_in_object[sample.second]);
+        view.normals_in_object.push_back(samples.normals_in_object[sample.second]);
+        view.pixels.push_back(pixel);
+    }
+    return view;
+}
+
+TEST(PixelCost, SamplesAreComparedOnThePixelsRays) {
+    const Pose tilted = kTruth * exp((Twist() << 0.6, 0.4, 0, 0, 0, 0).finished());
+    const DepthImage image = test::render(kPart, tilted, kCamera, 0.8F, nullptr);
+    const ObservedGrid observed = observe(make_observation(image, kCamera, {}), kGrid);
+    View view = rasterised(tilted, observed.camera, 1);
+    EXPECT_LT(pixel_cost(view, tilted, observed, {}).agreement(), 0.5) << "where they are, they are too near";
+    view.of_samples = true;
+    EXPECT_GT(pixel_cost(view, tilted, observed, {}).agreement(), 0.8) << "but where an edge crosses the pixel";
+}
+
+TEST(PixelCost, GapsBetweenSamplesAreNoOutline) {
+    const ObservedGrid observed = observe(observe_part(false), kGrid);
+    View view = rasterised(kTruth, observed.camera, 4);
+    PixelCostOptions options;
+    options.with_outline = true;
+    EXPECT_GT(pixel_cost(view, kTruth, observed, options).flush_share(), 0.8) << "they look like one";
+    view.of_samples = true;
+    EXPECT_LT(pixel_cost(view, kTruth, observed, options).flush_share(), 0.2);
+}
+
+TEST(Likelihood, LiesBetweenCertainAndIgnorant) {
+    // Epsilon of a chance match within the gate, 3/5 gate^2, with no sensor noise, is half a unit of log-likelihood.
+    EXPECT_NEAR(negative_log_likelihood(0.6 * 0.03 * 0.03, 0.0, 0.03), 0.5, 1e-12);
+    PixelCost cost;
+    cost.cost = 0.1;
+    PixelCostOptions options;
+    EXPECT_NEAR(negative_log_likelihood(cost, options),
+                0.5 * options.independent_rays * options.truncation_sigmas * options.truncation_sigmas * 0.1, 1e-12);
+}
+
+}  // namespace
+}  // namespace nearpose

@@ -1,0 +1,87 @@
+#include "core/evidence/verdict.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <vector>
+
+namespace nearpose {
+namespace {
+
+// Everything speaks for the estimate.
+Evidence convincing() {
+    Evidence evidence;
+    evidence.seen = true;
+    evidence.pixels.segmented = true;
+    evidence.pixels.model_rays = 1000;
+    evidence.pixels.agreeing = 980;
+    evidence.pixels.contradicted = 10;
+    evidence.pixels.missing_model = 20;
+    evidence.pixels.outline = 100;
+    evidence.pixels.flush = 10;
+    evidence.rivals_tried = true;
+    evidence.covariance_about_centre = 1e-8 * Matrix6d::Identity();
+    return evidence;
+}
+
+Verdict verdict_of(const Evidence& evidence) {
+    return judge(evidence, Tolerance{}, Symmetries{});
+}
+
+TEST(Verdict, AcceptsWhatAllEvidenceSpeaksFor) {
+    EXPECT_EQ(verdict_of(convincing()), Verdict::kAccept);
+}
+
+TEST(Verdict, NothingSeenOrContradictedIsLost) {
+    Evidence evidence = convincing();
+    evidence.seen = false;
+    EXPECT_EQ(verdict_of(evidence), Verdict::kLost);
+    evidence = convincing();
+    evidence.pixels.contradicted = 900;
+    EXPECT_EQ(verdict_of(evidence), Verdict::kLost);
+}
+
+TEST(Verdict, EachDoubtAloneIsEnoughToLookAgain) {
+    const std::vector<std::function<void(Evidence&)>> doubts = {
+        [](Evidence& e) { e.pixels.contradicted = 150; },                      // much of what is seen disagrees
+        [](Evidence& e) { e.pixels.model_rays = 10000; },                      // hardly anything of it is seen
+        [](Evidence& e) { e.pixels.flush = 80; },                              // the surface goes on beyond its outline
+        [](Evidence& e) { e.pixels.missing_model = 5000; },                    // the mask holds much more
+        [](Evidence& e) { e.rival_weight = 0.3; },                             // another pose explains it as well
+        [](Evidence& e) { e.rivals_tried = false; },                           // nobody looked for one
+        [](Evidence& e) { e.covariance_about_centre(4, 4) = 0.002 * 0.002; },  // known to 5 mm only
+        [](Evidence& e) { e.covariance_about_centre(0, 0) = 0.02 * 0.02; },    // known to 3 degrees only
+    };
+    for (std::size_t k = 0; k < doubts.size(); ++k) {
+        Evidence evidence = convincing();
+        doubts[k](evidence);
+        EXPECT_EQ(verdict_of(evidence), Verdict::kContinue) << k;
+    }
+}
+
+TEST(Verdict, WhatATurnAboutAnAxisOfRevolutionLeavesOpenDoesNotCount) {
+    Evidence evidence = convincing();
+    evidence.covariance_about_centre(2, 2) = 1.0;
+    Symmetries shaft;
+    shaft.continuous.push_back({Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero()});
+    EXPECT_EQ(judge(evidence, Tolerance{}, shaft), Verdict::kAccept);
+    EXPECT_EQ(judge(evidence, Tolerance{}, Symmetries{}), Verdict::kContinue);
+}
+
+TEST(Verdict, AnImprecisePoseMayConvince) {
+    Evidence evidence = convincing();
+    evidence.covariance_about_centre = Matrix6d::Identity();
+    EXPECT_TRUE(convinces(evidence));
+    evidence.rival_weight = 0.3;
+    EXPECT_FALSE(convinces(evidence));
+}
+
+TEST(Verdict, ToleranceIsTheUsers) {
+    Evidence evidence = convincing();
+    evidence.covariance_about_centre(4, 4) = 0.001 * 0.001;  // 90 % region: 2.5 mm
+    EXPECT_EQ(judge(evidence, Tolerance{0.002, 0.0175}, Symmetries{}), Verdict::kContinue);
+    EXPECT_EQ(judge(evidence, Tolerance{0.003, 0.0175}, Symmetries{}), Verdict::kAccept);
+}
+
+}  // namespace
+}  // namespace nearpose

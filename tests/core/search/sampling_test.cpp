@@ -1,0 +1,94 @@
+#include "core/search/sampling.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/core/analytic_part.hpp"
+
+namespace nearpose {
+namespace {
+
+const test::BoxViewGenerator kPart(test::asymmetric_part());
+const PinholeCamera kCamera = test::small_camera();
+const Pose kTruth{Eigen::Quaterniond(Eigen::AngleAxisd(2.6, Eigen::Vector3d(1, 0.3, 0.1).normalized())),
+                  {0.05, 0, 0.45}};
+
+Observation observe_part() {
+    Mask mask;
+    const DepthImage image = test::render(kPart, kTruth, kCamera, 0.8F, &mask);
+    return make_observation(image, kCamera, mask);
+}
+
+TEST(Start, SphereHasTheCloudsMeanDistanceAsRadiusAndAllOrientations) {
+    const Observation observation = observe_part();
+    const ParticleSet particles = start_on_sphere(observation, kPart.extent(), 2000, 1, 1);
+    ASSERT_EQ(particles.size(), 2000);
+    Eigen::Matrix3d outer = Eigen::Matrix3d::Zero();
+    for (const Pose& pose : particles.poses) {
+        // The viewing pose is the inverse: the camera stands on a sphere about the object's centre.
+        const Eigen::Vector3d camera_in_object = pose.inverse().translation;
+        EXPECT_NEAR((camera_in_object - kPart.extent().centre_in_object()).norm(), observation.mean_distance_m(), 1e-9);
+        const Eigen::Vector3d axis = pose.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+        outer += axis * axis.transpose() / 2000.0;
+    }
+    EXPECT_LT((outer - Eigen::Matrix3d::Identity() / 3.0).norm(), 0.05);
+}
+
+TEST(Start, AroundAPoseKeepsThePoseItself) {
+    const ParticleSet particles = start_around(kTruth, {0.1, 0.01}, kPart.extent(), 500, 1, 1);
+    EXPECT_EQ(angle_between(particles.poses[0].rotation, kTruth.rotation), 0.0);
+    double sum2 = 0.0;
+    for (const Pose& pose : particles.poses) {
+        const double angle = angle_between(pose.rotation, kTruth.rotation);
+        sum2 += angle * angle / 500.0;
+    }
+    EXPECT_NEAR(std::sqrt(sum2), 0.1 * std::sqrt(3.0), 0.015);
+}
+
+TEST(Start, AnchorsLieOnTheSurfaceWithOutwardNormalsOnAllSides) {
+    const auto anchors = find_anchors(kPart);
+    ASSERT_GT(anchors.size(), 500U);
+    std::array<int, 6> sides{};
+    for (const SurfaceAnchor& anchor : anchors) {
+        // A step outwards is seen from there: the ray back hits the surface at that point.
+        const Eigen::Vector3d eye = (anchor.point_in_object + 0.001F * anchor.normal_in_object).cast<double>();
+        bool inside = false;
+        for (const test::Box& box : test::asymmetric_part())
+            inside |= (eye.array() > box.min.array()).all() && (eye.array() < box.max.array()).all();
+        EXPECT_FALSE(inside);
+        int axis = 0;
+        anchor.normal_in_object.cwiseAbs().maxCoeff(&axis);
+        ++sides[2 * axis + (anchor.normal_in_object[axis] > 0)];
+    }
+    for (const int side : sides) EXPECT_GT(side, 50);
+}
+
+TEST(Start, SurfaceStartsLayAnAnchorOnAMeasuredPointNormalOnNormal) {
+    const Observation observation = observe_part();
+    const std::vector<SurfaceAnchor> one = {{{0.1F, 0.02F, 0.01F}, {1, 0, 0}}};
+    for (const Pose& pose : start_on_surface(observation, one, 50, 1, 1, 0).poses) {
+        const Eigen::Vector3f point = (pose * one[0].point_in_object.cast<double>()).cast<float>();
+        const Eigen::Vector3f normal = (pose.rotation * one[0].normal_in_object.cast<double>()).cast<float>();
+        float best = 1.0F;
+        for (std::size_t p = 0; p < observation.points_in_camera().size(); ++p)
+            best = std::min(best, (observation.points_in_camera()[p] - point).norm() +
+                                      (observation.normals_in_camera()[p] - normal).norm());
+        EXPECT_LT(best, 1e-4F);
+    }
+    EXPECT_EQ(start_on_surface(observation, {}, 50, 1, 1, 0).size(), 0);
+}
+
+TEST(Start, ShiftLaysTheSeenSurfaceOnTheMeasuredOne) {
+    const Observation observation = observe_part();
+    Pose off = kTruth;
+    off.translation += Eigen::Vector3d(0.02, -0.03, 0.06);
+    const Pose shifted = shift_to_seen_surface(off, observation, kPart, kCamera);
+    EXPECT_LT((shifted.translation - kTruth.translation).norm(), 0.012) << "another pose shows a little other surface";
+    Pose away = kTruth;
+    away.translation.x() += 10.0;  // out of view: nothing to go by
+    EXPECT_EQ(shift_to_seen_surface(away, observation, kPart, kCamera).translation.x(), away.translation.x());
+}
+
+}  // namespace
+}  // namespace nearpose
