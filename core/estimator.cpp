@@ -74,7 +74,7 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
         // The paper: view, correspondences, gradient steps and weight of every particle; the estimate is the MAP. The
         // default method compares the modes of the posterior with their alternatives.
         const MovedParticles moved = move_particles(particles, situation, frame, ledger);
-        const bool modes_compared = method.refinement.modes > 0;
+        const bool modes_compared = method.hypotheses.modes > 0;
         const Choice choice =
             modes_compared ? choose_mode(belief, moved, situation, frame, ledger) : choose_map(moved, frame);
         if (choice.seen) adopt(belief, moved, choice);
@@ -84,7 +84,7 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
     }
     if (result.status == UpdateStatus::kNoPose && belief.tracked) result.status = UpdateStatus::kPredicted;
     const Assessment assessment = assess(result, belief, fit_covariance, frame, ledger);
-    belief.lock = after_assessment(belief.lock, assessment, method.refinement);
+    belief.lock = after_assessment(belief.lock, assessment, method);
 
     // All state is written here: an update that throws leaves no trace.
     budget_ = ledger.close(result);
@@ -100,8 +100,8 @@ void PoseEstimator::reset(const Pose& camera_from_object, const Diffusion& sprea
     if (!is_valid(camera_from_object))
         throw std::invalid_argument("PoseEstimator: the pose to start from is not a finite rigid transform");
     reset();
-    belief_.particles =
-        start_around(camera_from_object, spread, model_->extent(), options_.num_particles, options_.seed, belief_.step);
+    belief_.particles = sample_around(camera_from_object, spread, model_->extent(), options_.num_particles,
+                                      options_.seed, belief_.step);
     belief_.tracked = Mode{camera_from_object, 1.0, 0.0};
 }
 

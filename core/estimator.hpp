@@ -7,9 +7,9 @@
 #include "core/options.hpp"
 #include "core/pose_solver.hpp"
 #include "core/result.hpp"
-#include "core/update/time_budget.hpp"
 #include "core/update/belief.hpp"
 #include "core/update/object_model.hpp"
+#include "core/update/time_budget.hpp"
 #include "core/view_generator.hpp"
 
 namespace nearpose {

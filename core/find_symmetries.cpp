@@ -120,7 +120,7 @@ void SymmetrySearch::list_elements() {
 // Also true where an exact symmetry, or a near one before an exact one, amounts to it.
 bool SymmetrySearch::is_listed_near(const Pose& turn) const {
     const auto equal = [&](const Pose& other) { return contains(found_, other.inverse() * turn); };
-    return contains(found_, turn) || std::any_of(found_.near.begin(), found_.near.end(), equal);
+    return contains(found_, turn) || std::any_of(found_.near_symmetries.begin(), found_.near_symmetries.end(), equal);
 }
 
 // Turns by other angles about the same axis are less alike: a tracker that is led astray stays there.
@@ -140,7 +140,7 @@ bool SymmetrySearch::stands_out(const Pose& turn) const {
 bool SymmetrySearch::take_near(const Pose& turn) {
     if (is_listed_near(turn)) return true;
     const bool near = nearly_alike(turn, 1, kNearlyAlike) >= kNearlyAlike && stands_out(turn);
-    if (near) found_.near.push_back(turn);
+    if (near) found_.near_symmetries.push_back(turn);
     return near;
 }
 
@@ -167,7 +167,7 @@ void SymmetrySearch::take_near_revolution(const AxisOfRevolution& axis) {
         if (nearly_alike(turn_about(axis, angle), 2, kNearlyAlike) < kNearlyAlike) return;
     for (int k = 1; k < kMostFold; ++k) {
         const Pose turn = turn_about(axis, 2.0 * M_PI * k / kMostFold);
-        if (!is_listed_near(turn)) found_.near.push_back(turn);
+        if (!is_listed_near(turn)) found_.near_symmetries.push_back(turn);
     }
 }
 
@@ -227,10 +227,10 @@ Symmetries SymmetrySearch::run() {
     for (const AxisOfRevolution& spindle : candidates.spindles) add_spindle(spindle);
     for (const AxisOfRevolution& spindle : spindles_) try_half_turns_across(spindle);
     // An axis of revolution that was found late makes some of what was found before it equal.
-    const std::vector<Pose> near = std::exchange(found_.near, {});
+    const std::vector<Pose> near = std::exchange(found_.near_symmetries, {});
     list_elements();
     for (const Pose& turn : near)
-        if (!is_listed_near(turn)) found_.near.push_back(turn);
+        if (!is_listed_near(turn)) found_.near_symmetries.push_back(turn);
     return found_;
 }
 

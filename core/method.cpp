@@ -1,13 +1,15 @@
 #include "core/method.hpp"
 
+#include <string>
+
 #include "core/base/check.hpp"
 
 namespace nearpose {
 
 Method method_paper() {
     Method method;
-    method.start = Start::kSphere;
-    method.start_candidates = 0;
+    method.search.initialisation = Initialisation::kSphere;
+    method.search.candidates = 0;
     method.step.association = Association::kNearest;
     method.step.max_distance_diameters = 0.07;
     method.step.extra_sigma_diameters = 0.0;
@@ -20,85 +22,103 @@ Method method_paper() {
 
 Method method_default() {
     Method method;
-    method.start = Start::kPairs;
-    method.start_candidates = 300;
-    method.start_draws = 10000;
+    method.search.initialisation = Initialisation::kPairs;
+    method.search.candidates = 300;
+    method.search.draws = 10000;
+    method.search.step.rounds = 2;
+    method.search.step.max_rays = 400;
+    method.search.step.max_distance_diameters = 0.2;
+    method.search.step.extra_sigma_diameters = 0.03;
     method.step.max_rays = 400;
-    method.start_step.rounds = 2;
-    method.start_step.max_rays = 400;
-    method.start_step.max_distance_diameters = 0.2;
-    method.start_step.extra_sigma_diameters = 0.03;
-    method.refinement.modes = 5;
-    method.refinement.rivals = 96;
-    method.economy.on = true;
-    method.unmeasured_diffusion_diameters = 0.03;
+    method.hypotheses.modes = 5;
+    method.hypotheses.alternatives = 96;
+    method.effort.on = true;
+    method.filter.unmeasured_diffusion_diameters = 0.03;
     return method;
 }
 
 namespace {
 
-void validate(const GradientStep& step, const std::string& name) {
-    check_option(name + ".max_distance_diameters", step.max_distance_diameters, 1e-6, 10.0);
-    check_option(name + ".extra_sigma_diameters", step.extra_sigma_diameters, 0.0, 10.0);
-    check_option(name + ".max_normal_angle_rad", step.max_normal_angle_rad, 0.0, 3.15);
-    check_option(name + ".consensus_draws", step.consensus_draws, 0, 100000);
-    check_option(name + ".consensus_distance_diameters", step.consensus_distance_diameters, 1e-6, 10.0);
-    check_option(name + ".rounds", step.rounds, 0, 100);
-    check_option(name + ".step_size", step.step_size, 0.0, 1.0);
-    check_option(name + ".max_rays", step.max_rays, 1, 1e7);
+void validate(const FilterOptions& options) {
+    check_option("filter.diffusion_rotation_rad", options.diffusion_rotation_rad, 0.0, 3.15);
+    check_option("filter.diffusion_diameters", options.diffusion_diameters, 0.0, 10.0);
+    check_option("filter.unmeasured_diffusion_diameters", options.unmeasured_diffusion_diameters, 0.0, 10.0);
+    check_option("filter.resample_below", options.resample_below, 0.0, 1.0);
 }
 
-void validate(const Refinement& refinement) {
-    check_option("refinement.modes", refinement.modes, 0, 1000);
-    check_option("refinement.rounds", refinement.rounds, 1, 100);
-    check_option("refinement.max_rays", refinement.max_rays, 1, 1e7);
-    check_option("refinement.first_extra_sigma_diameters", refinement.first_extra_sigma_diameters, 0.0, 1.0);
-    check_option("refinement.cost_sigma_diameters", refinement.cost_sigma_diameters, 0.0, 1.0);
-    check_option("refinement.rays_per_evidence", refinement.rays_per_evidence, 1.0, 1e6);
-    check_option("refinement.challenge_nats", refinement.challenge_nats, 0.0, 1e6);
-    check_option("refinement.rivals", refinement.rivals, 0, 1e5);
-    check_option("refinement.rival_period", refinement.rival_period, 1, 1e6);
-    check_option("refinement.rival_modes", refinement.rival_modes, 0, 1000);
-    check_option("refinement.shortlist", refinement.shortlist, 0, 1e5);
-    check_option("refinement.min_support", refinement.min_support, 0.0, 1.0);
-    check_option("refinement.frames_to_search", refinement.frames_to_search, 0, 1e6);
-    check_option("refinement.frames_to_hold", refinement.frames_to_hold, 0, 1e6);
+void validate(const PixelCostOptions& options) {
+    check_option("pixel_cost.truncation_sigmas", options.truncation_sigmas, 0.1, 100.0);
+    check_option("pixel_cost.free_space_cost", options.free_space_cost, 1.0, 100.0);
+    check_option("pixel_cost.occluded_cost", options.occluded_cost, 0.0, 1.0);
+    check_option("pixel_cost.unexplained_cost", options.unexplained_cost, 0.0, 1.0);
+    check_option("pixel_cost.outline_cost", options.outline_cost, 0.0, 100.0);
+    check_option("pixel_cost.independent_rays", options.independent_rays, 0.0, 1e6);
 }
 
-void validate(const Economy& economy) {
-    check_option("economy.min_particles", economy.min_particles, 1, 1e6);
-    check_option("economy.min_particles_unmeasured", economy.min_particles_unmeasured, 1, 1e6);
-    check_option("economy.kld_error", economy.kld_error, 1e-6, 10.0);
-    check_option("economy.step_rays", economy.step_rays, 1, 1e7);
-    check_option("economy.step_rounds", economy.step_rounds, 0, 100);
-    check_option("economy.rays", economy.rays, 1, 1e7);
-    check_option("economy.fit_rays", economy.fit_rays, 1, 1e7);
-    check_option("economy.rounds", economy.rounds, 1, 100);
-    check_option("economy.confirming_rays", economy.confirming_rays, 1, 1e7);
-    check_option("economy.confirming_rounds", economy.confirming_rounds, 1, 100);
-    check_option("economy.rivals", economy.rivals, 0, 1e5);
+void validate(const HypothesisOptions& options) {
+    check_option("hypotheses.modes", options.modes, 0, 1000);
+    check_option("hypotheses.alternatives", options.alternatives, 0, 1e5);
+    check_option("hypotheses.alternatives_period", options.alternatives_period, 1, 1e6);
+    check_option("hypotheses.alternatives_refined", options.alternatives_refined, 0, 1000);
+    check_option("hypotheses.leaders", options.leaders, 1, 1000);
+    check_option("hypotheses.mode_rotation_rad", options.mode_rotation_rad, 0.0, 3.15);
+    check_option("hypotheses.mode_translation_diameters", options.mode_translation_diameters, 0.0, 10.0);
+}
+
+void validate(const PreselectionOptions& options) {
+    check_option("preselection.tried", options.tried, 0, 1e5);
+    check_option("preselection.rays", options.rays, 1, 1e7);
+    check_option("preselection.rounds", options.rounds, 0, 100);
+    check_option("preselection.kept", options.kept, 1, 1e5);
+    check_option("preselection.disambiguated", options.disambiguated, 0, 1000);
+}
+
+void validate(const ChoiceOptions& options) {
+    check_option("choice.challenge_nats", options.challenge_nats, 0.0, 1e6);
+    check_option("choice.min_support", options.min_support, 0.0, 1.0);
+    check_option("choice.accepted_evidence_kept", options.accepted_evidence_kept, 0.0, 1.0);
+}
+
+void validate(const RelocalisationOptions& options) {
+    check_option("relocalisation.frames_contradicted", options.frames_contradicted, 0, 1e6);
+    check_option("relocalisation.unverified_at_first", options.unverified_at_first, 0, 1e6);
+    check_option("relocalisation.unverified_period", options.unverified_period, 1, 1e6);
+}
+
+void validate(const PhaseEffort& effort, const std::string& name) {
+    check_option(name + ".particle_rays", effort.particle_rays, 1, 1e7);
+    check_option(name + ".mode_rays", effort.mode_rays, 1, 1e7);
+    check_option(name + ".mode_rounds", effort.mode_rounds, 1, 100);
+    check_option(name + ".alternatives", effort.alternatives, 0, 1e5);
+}
+
+void validate(const AdaptiveEffort& effort) {
+    check_option("effort.frames_to_confirm", effort.frames_to_confirm, 0, 1e6);
+    validate(effort.confirming, "effort.confirming");
+    validate(effort.tracking, "effort.tracking");
+    check_option("effort.predicted_rounds", effort.predicted_rounds, 0, 100);
+    check_option("effort.fit_rays", effort.fit_rays, 1, 1e7);
+    check_option("effort.min_particles", effort.min_particles, 1, 1e6);
+    check_option("effort.min_particles_unmeasured", effort.min_particles_unmeasured, 1, 1e6);
+    check_option("effort.kld_error", effort.kld_error, 1e-6, 10.0);
+    check_option("effort.far_less_likely_nats", effort.far_less_likely_nats, 0.0, 1e6);
 }
 
 }  // namespace
 
 void validate(const Method& method) {
-    check_option("start_candidates", method.start_candidates, 0, 1e6);
-    check_option("start_draws", method.start_draws, 0, 1e7);
-    validate(method.start_step, "start_step");
+    validate(method.search);
+    validate(method.filter);
     validate(method.step, "step");
-    validate(method.refinement);
-    validate(method.economy);
-    check_option("pixel_cost.truncation_sigmas", method.pixel_cost.truncation_sigmas, 0.1, 100.0);
-    check_option("pixel_cost.deep_cost", method.pixel_cost.deep_cost, 1.0, 100.0);
-    check_option("deep_diameters", method.deep_diameters, 0.0, 10.0);
-    check_option("pixel_cost.occluded_cost", method.pixel_cost.occluded_cost, 0.0, 1.0);
-    check_option("pixel_cost.unexplained_cost", method.pixel_cost.unexplained_cost, 0.0, 1.0);
-    check_option("pixel_cost.outline_cost", method.pixel_cost.outline_cost, 0.0, 100.0);
-    check_option("pixel_cost.independent_rays", method.pixel_cost.independent_rays, 0.0, 1e6);
-    check_option("diffusion_rotation_rad", method.diffusion_rotation_rad, 0.0, 3.15);
-    check_option("diffusion_diameters", method.diffusion_diameters, 0.0, 10.0);
-    check_option("unmeasured_diffusion_diameters", method.unmeasured_diffusion_diameters, 0.0, 10.0);
-    check_option("resample_below", method.resample_below, 0.0, 1.0);
+    validate(method.pixel_cost);
+    check_option("free_space_depth_diameters", method.free_space_depth_diameters, 0.0, 10.0);
+    validate(method.hypotheses);
+    validate(method.preselection);
+    validate(method.refinement, "refinement");
+    validate(method.choice);
+    validate(method.verification);
+    validate(method.relocalisation);
+    validate(method.effort);
 }
 
 }  // namespace nearpose

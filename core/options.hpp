@@ -3,10 +3,10 @@
 
 #include <cstdint>
 
+#include "core/evidence/verdict.hpp"
+#include "core/fit/track.hpp"
 #include "core/method.hpp"
 #include "core/shape/symmetry.hpp"
-#include "core/fit/track.hpp"
-#include "core/evidence/verdict.hpp"
 
 namespace nearpose {
 

@@ -1,8 +1,8 @@
 // Port: how a pose is pulled onto the observation, given correspondences (the least squares step of the paper's ICP).
 #pragma once
 
-#include "core/correspondences.hpp"
 #include "core/base/pose.hpp"
+#include "core/correspondences.hpp"
 
 namespace nearpose {
 

@@ -3,11 +3,11 @@
 
 #include <vector>
 
-#include "core/filter/gradient_step.hpp"
-#include "core/evidence/observability.hpp"
 #include "core/evidence/likelihood.hpp"
-#include "core/shape/modes.hpp"
+#include "core/evidence/observability.hpp"
 #include "core/evidence/verdict.hpp"
+#include "core/filter/gradient_step.hpp"
+#include "core/shape/modes.hpp"
 
 namespace nearpose {
 
@@ -28,7 +28,7 @@ struct UpdateSeconds {
 struct Effort {
     int starts = 0;  // candidates of a search; 0: none was made
     int particles = 0;
-    int rivals = 0;                   // alternative hypotheses that were tried
+    int alternatives = 0;             // hypotheses beside the modes that were tried
     int modes = 0;                    // refined
     bool reduced_for_budget = false;  // more would have been made with more time
 };

@@ -38,8 +38,8 @@ std::optional<data_set::ModelInfo> declared_info(const ModelOptions& model) {
 // The declared ones, and what the part may be mistaken for besides, which BOP's files do not hold.
 Symmetries with_near(const Symmetries& declared, const Symmetries& found) {
     Symmetries symmetries = declared;
-    for (const Pose& turn : found.near)
-        if (!contains(declared, turn)) symmetries.near.push_back(turn);
+    for (const Pose& turn : found.near_symmetries)
+        if (!contains(declared, turn)) symmetries.near_symmetries.push_back(turn);
     return symmetries;
 }
 
@@ -51,7 +51,7 @@ Symmetries choose_symmetries(const EstimateOptions& options, const Mesh& mesh, c
     const bool take_declared = options.symmetries == "declared" || !declared.empty();
     const Symmetries found = options.symmetries == "declared" ? Symmetries{} : find_symmetries(mesh);
     const Symmetries symmetries = take_declared ? with_near(declared, found) : found;
-    if (!symmetries.empty() || !symmetries.near.empty()) {
+    if (!symmetries.empty() || !symmetries.near_symmetries.empty()) {
         const std::string source = take_declared ? "of models_info.json" : "found from the mesh";
         print_notice("symmetries " + source + ": " + describe(symmetries), shared.quiet);
     }

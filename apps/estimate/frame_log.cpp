@@ -55,7 +55,7 @@ Json seconds_of(const UpdateSeconds& seconds) {
 Json effort_of(const Effort& effort) {
     return {{"starts", effort.starts},
             {"particles", effort.particles},
-            {"rivals", effort.rivals},
+            {"rivals", effort.alternatives},
             {"modes", effort.modes},
             {"reduced_for_budget", effort.reduced_for_budget}};
 }
@@ -147,7 +147,7 @@ std::string first_particles_line() {
 }
 
 std::string particles_line(int frame_id, const ParticleSet& particles) {
-    const std::vector<double> shares = probabilities(particles.weights);
+    const std::vector<double> shares = probabilities(particles.negative_log_weights);
     std::string line = "{\"frame\":" + std::to_string(frame_id) + ",\"particles\":[";
     for (std::size_t i = 0; i < particles.poses.size(); ++i) {
         const Pose& pose = particles.poses[i];

@@ -80,7 +80,7 @@ std::string exact_text(const Symmetries& symmetries) {
 
 std::string near_text(const Symmetries& symmetries) {
     std::vector<std::string> parts;
-    for (const TurnsAboutAxis& turns : by_axis(symmetries.near)) {
+    for (const TurnsAboutAxis& turns : by_axis(symmetries.near_symmetries)) {
         std::vector<std::string> degrees;
         for (const double angle : turns.angles_rad)
             degrees.push_back(data_set::format_fixed(angle * 180.0 / std::numbers::pi, 0));
@@ -115,7 +115,7 @@ const std::vector<std::string>& symmetry_choices() {
 std::string describe(const Symmetries& symmetries) {
     const std::string exact = exact_text(symmetries);
     const std::string text = exact.empty() ? "none" : exact;
-    return symmetries.near.empty() ? text : text + "; nearly the same after " + near_text(symmetries);
+    return symmetries.near_symmetries.empty() ? text : text + "; nearly the same after " + near_text(symmetries);
 }
 
 }  // namespace nearpose::program

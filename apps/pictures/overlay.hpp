@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "core/observation/observation.hpp"
 #include "core/base/pose.hpp"
+#include "core/observation/observation.hpp"
 #include "raycast/embree_scene.hpp"
 
 namespace nearpose::pictures {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/observation/observation.hpp"
 #include "core/base/pose.hpp"
+#include "core/observation/observation.hpp"
 #include "raycast/embree_scene.hpp"
 
 namespace nearpose::report {

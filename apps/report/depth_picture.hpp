@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/base/depth_image.hpp"
-#include "core/observation/observation.hpp"
 #include "core/base/pose.hpp"
+#include "core/observation/observation.hpp"
 #include "raycast/embree_scene.hpp"
 
 namespace nearpose::report {

@@ -57,17 +57,17 @@ void leave_out(const std::string& part, Method& method) {
         throw std::invalid_argument("without '" + part +
                                     "': take nothing, fine_fit, outline, depths, pairs, shortlist, rivals, confidence, "
                                     "doubts or economy");
-    if (part != "nothing" && method.refinement.modes == 0)
+    if (part != "nothing" && method.hypotheses.modes == 0)
         throw std::invalid_argument("without " + part + ": only the default method has it");
-    if (part == "fine_fit") method.refinement.fusion = false;
+    if (part == "fine_fit") method.fusion = false;
     if (part == "outline") method.refinement.outline = false;
-    if (part == "depths") method.deep_diameters = 0.0;
-    if (part == "shortlist") method.refinement.shortlist = 0;
-    if (part == "pairs") method.start = Start::kSurface;
-    if (part == "rivals") method.refinement.rivals = 0;
-    if (part == "confidence") method.refinement.confidence = false;
-    if (part == "doubts") method.refinement.doubts = false;
-    if (part == "economy") method.economy.on = false;
+    if (part == "depths") method.free_space_depth_diameters = 0.0;
+    if (part == "shortlist") method.preselection.tried = 0;
+    if (part == "pairs") method.search.initialisation = Initialisation::kSurface;
+    if (part == "rivals") method.hypotheses.alternatives = 0;
+    if (part == "confidence") method.choice.accepted_evidence = false;
+    if (part == "doubts") method.relocalisation.unverified = false;
+    if (part == "economy") method.effort.on = false;
 }
 
 }  // namespace
@@ -77,7 +77,7 @@ Method make_method(const EstimatorSetup& setup) {
         throw std::invalid_argument("method '" + setup.method + "': take default or paper");
     }
     Method method = setup.method == "paper" ? method_paper() : method_default();
-    if (!setup.adaptive) method.economy.min_particles = method.economy.min_particles_unmeasured = setup.particles;
+    if (!setup.adaptive) method.effort.min_particles = method.effort.min_particles_unmeasured = setup.particles;
     if (setup.rounds && setup.gradient) {
         check_option("rounds (of the gradient step)", *setup.rounds, 1, 100);
         method.step.rounds = *setup.rounds;
@@ -92,8 +92,8 @@ Method make_method(const EstimatorSetup& setup) {
             throw std::invalid_argument("rounds and residual are of the gradient step, which is off");
         }
         method.step.rounds = 0;
-        method.start_step.rounds = 0;
-        method.refinement.modes = 0;
+        method.search.step.rounds = 0;
+        method.hypotheses.modes = 0;
     }
     leave_out(setup.without, method);
     validate(method);

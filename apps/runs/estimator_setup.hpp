@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/estimator.hpp"
+#include "core/evidence/verdict.hpp"
 #include "core/method.hpp"
 #include "core/pose_solver.hpp"
-#include "core/evidence/verdict.hpp"
 #include "core/view_generator.hpp"
 #include "raycast/mesh.hpp"
 

@@ -10,8 +10,8 @@
 
 #include "apps/data_set/bop_scene.hpp"
 #include "core/base/camera.hpp"
-#include "core/observation/observation.hpp"
 #include "core/base/pose.hpp"
+#include "core/observation/observation.hpp"
 
 namespace nearpose::program {
 

@@ -7,7 +7,7 @@
 
 namespace nearpose {
 
-enum class RandomPurpose : std::uint64_t { kStart = 1, kDiffusion, kResampling, kSampleConsensus, kRivals };
+enum class RandomPurpose : std::uint64_t { kStart = 1, kDiffusion, kResampling, kSampleConsensus, kAlternatives };
 
 // A stream of independent draws (SplitMix64, Steele et al. 2014). The standard library's distributions differ between
 // implementations, so the draws are made here.

@@ -28,8 +28,8 @@ namespace {
 
 // Of model before the measured surface, where nothing is segmented.
 double cost_in_front(double depth_m, const PixelCostOptions& options) {
-    if (!(options.deep_m > 0.0)) return 1.0;
-    return 1.0 + (options.deep_cost - 1.0) * std::clamp(depth_m / options.deep_m - 1.0, 0.0, 1.0);
+    if (!(options.free_space_depth_m > 0.0)) return 1.0;
+    return 1.0 + (options.free_space_cost - 1.0) * std::clamp(depth_m / options.free_space_depth_m - 1.0, 0.0, 1.0);
 }
 
 // The cost of one ray that meets the model, and its count.
@@ -37,12 +37,12 @@ double cost_of_hit(double in_front_m, double residual_m, double sigma_m, PixelSt
                    double weight, const PixelCostOptions& options, PixelCost& counts) {
     const double r = residual_m / (options.truncation_sigmas * sigma_m);  // positive: the model is in front
     if (r > 1.0) {
-        ++counts.model_in_front;
+        ++counts.free_space_violations;
         ++counts.contradicted;
         return segmented ? 1.0 : cost_in_front(in_front_m, options);
     }
     if (r < -1.0) {
-        ++counts.model_behind;
+        ++counts.occluded;
         if (segmented && state == PixelState::kCandidate) {
             ++counts.contradicted;
             return 1.0;
@@ -160,13 +160,13 @@ PixelCost pixel_cost(const View& view, const Pose& camera_from_object, const Obs
             explained += weight * options.unexplained_cost - cost;
             continue;
         }
-        ++result.flush;
+        ++result.coplanar;
         if (observed.segmented) continue;
         --result.agreeing;
         sum += options.outline_cost - cost;
     }
     // The more of its outline the surface goes on beyond, the less what lies within is the object.
-    if (!observed.segmented) sum += result.flush_share() * result.flush_share() * std::max(0.0, explained);
+    if (!observed.segmented) sum += result.coplanar_share() * result.coplanar_share() * std::max(0.0, explained);
     result.missing_model = observed.num_candidates - candidates_covered;
     result.gain = options.unexplained_cost * covered_weight - sum;
     double missing = result.missing_model;

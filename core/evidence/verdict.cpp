@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "core/base/check.hpp"
+
 namespace nearpose {
 
 const char* to_string(Verdict verdict) {
@@ -37,21 +39,29 @@ bool within_tolerance(const Matrix6d& covariance, const Tolerance& tolerance, co
 
 }  // namespace
 
-bool convinces(const Evidence& evidence) {
-    constexpr double kMostFlush = 0.4;      // share of the outline where the surface goes on
-    constexpr double kLeastOverlap = 0.55;  // of mask and model
-    constexpr double kLeastSupport = 0.3;   // share of the model that is seen at all
-    const PixelCost& pixels = evidence.pixels;
-    const bool fits = pixels.agreement() >= kConvincingAgreement && pixels.support() >= kLeastSupport &&
-                      pixels.flush_share() <= kMostFlush && pixels.overlap() >= kLeastOverlap;
-    return evidence.seen && fits && evidence.rivals_tried && evidence.rival_weight <= kMostRivalWeight;
+void validate(const VerificationOptions& options) {
+    check_option("verification.min_agreement", options.min_agreement, 0.0, 1.0);
+    check_option("verification.min_support", options.min_support, 0.0, 1.0);
+    check_option("verification.min_overlap", options.min_overlap, 0.0, 1.0);
+    check_option("verification.max_coplanar_share", options.max_coplanar_share, 0.0, 1.0);
+    check_option("verification.max_alternatives_weight", options.max_alternatives_weight, 0.0, 1.0);
+    check_option("verification.contradicted_below", options.contradicted_below, 0.0, 1.0);
+    check_option("verification.lost_below", options.lost_below, 0.0, 1.0);
 }
 
-Verdict judge(const Evidence& evidence, const Tolerance& tolerance, const Symmetries& symmetries) {
-    constexpr double kLeastToBelieve = 0.6;  // share of rays that agree
-    if (!evidence.seen || evidence.pixels.agreement() < kLeastToBelieve) return Verdict::kLost;
+bool is_verified(const Evidence& evidence, const VerificationOptions& options) {
+    const PixelCost& pixels = evidence.pixels;
+    const bool fits = pixels.agreement() >= options.min_agreement && pixels.support() >= options.min_support &&
+                      pixels.coplanar_share() <= options.max_coplanar_share && pixels.overlap() >= options.min_overlap;
+    return evidence.seen && fits && evidence.alternatives_tried &&
+           evidence.alternatives_weight <= options.max_alternatives_weight;
+}
+
+Verdict judge(const Evidence& evidence, const Tolerance& tolerance, const Symmetries& symmetries,
+              const VerificationOptions& options) {
+    if (!evidence.seen || evidence.pixels.agreement() < options.lost_below) return Verdict::kLost;
     const bool sharp = within_tolerance(evidence.covariance_about_centre, tolerance, symmetries);
-    return convinces(evidence) && sharp ? Verdict::kAccept : Verdict::kContinue;
+    return is_verified(evidence, options) && sharp ? Verdict::kAccept : Verdict::kContinue;
 }
 
 }  // namespace nearpose

@@ -5,10 +5,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/correspondences.hpp"
-#include "core/observation/observation.hpp"
 #include "core/base/pose.hpp"
 #include "core/base/random.hpp"
+#include "core/correspondences.hpp"
+#include "core/observation/observation.hpp"
 #include "core/view_generator.hpp"
 
 namespace nearpose {

@@ -2,6 +2,9 @@
 
 #include <chrono>
 
+#include "core/base/check.hpp"
+#include "core/filter/association.hpp"
+
 namespace nearpose {
 namespace {
 
@@ -86,6 +89,27 @@ void weigh_by_overlap(const Correspondences& pairs, std::size_t num_view_points,
 
 }  // namespace
 
+void validate(const GradientStep& step, const std::string& name) {
+    check_option(name + ".max_distance_diameters", step.max_distance_diameters, 1e-6, 10.0);
+    check_option(name + ".extra_sigma_diameters", step.extra_sigma_diameters, 0.0, 10.0);
+    check_option(name + ".max_normal_angle_rad", step.max_normal_angle_rad, 0.0, 3.15);
+    check_option(name + ".consensus_draws", step.consensus_draws, 0, 100000);
+    check_option(name + ".consensus_distance_diameters", step.consensus_distance_diameters, 1e-6, 10.0);
+    check_option(name + ".rounds", step.rounds, 0, 100);
+    check_option(name + ".step_size", step.step_size, 0.0, 1.0);
+    check_option(name + ".max_rays", step.max_rays, 1, 1e7);
+}
+
+void validate(const RefinementOptions& options, const std::string& name) {
+    check_option(name + ".rounds", options.rounds, 1, 100);
+    check_option(name + ".rounds_per_view", options.rounds_per_view, 1, 100);
+    check_option(name + ".max_rays", options.max_rays, 1, 1e7);
+    check_option(name + ".first_extra_sigma_diameters", options.first_extra_sigma_diameters, 0.0, 1.0);
+    check_option(name + ".gate_sigmas", options.gate_sigmas, 0.1, 1e3);
+    check_option(name + ".cost_sigma_diameters", options.cost_sigma_diameters, 0.0, 1.0);
+    check_option(name + ".rays_per_evidence", options.rays_per_evidence, 1.0, 1e6);
+}
+
 StageSeconds& StageSeconds::operator+=(const StageSeconds& other) {
     views += other.views;
     association += other.association;
@@ -123,44 +147,42 @@ MovedParticle move_particle(const Pose& camera_from_object, const StepContext& c
     return moved;
 }
 
-MovedParticle refine_mode(const Pose& camera_from_object, const StepContext& context, const Refinement& refinement) {
+MovedParticle refine_mode(const Pose& camera_from_object, const StepContext& context,
+                          const RefinementOptions& options) {
     MovedParticle moved;
     moved.camera_from_object = camera_from_object;
     GradientStep step = context.step;
     step.association = Association::kProjective;
-    step.extra_sigma_diameters = refinement.first_extra_sigma_diameters;
+    step.extra_sigma_diameters = options.first_extra_sigma_diameters;
     const double diameter_m = context.views.extent().diameter_m();
     const double sensor_m = context.observation.sigma_m(context.observation.mean_distance_m());
     const RandomStream unused(0, 0, 0, RandomPurpose::kSampleConsensus);
     View view;
-    for (int round = 0; round < refinement.rounds; ++round) {
-        // A pair farther off than a few of its sigmas is not the same surface.
-        constexpr double kGateSigmas = 5.0;
-        constexpr int kRoundsPerView = 2;  // one moves the pose less than the view's rays are apart
-        step.max_distance_diameters = kGateSigmas * (step.extra_sigma_diameters + sensor_m / diameter_m);
+    for (int round = 0; round < options.rounds; ++round) {
+        step.max_distance_diameters = options.gate_sigmas * (step.extra_sigma_diameters + sensor_m / diameter_m);
         const StepContext sharper{context.views, context.solver, context.observation, context.observed,
                                   step,          context.cost,   context.pixel_cost,  context.scale_by_overlap};
-        if (round % kRoundsPerView == 0) view = cast(moved.camera_from_object, context, moved);
+        if (round % options.rounds_per_view == 0) view = cast(moved.camera_from_object, context, moved);
         solve(find_pairs(view, sharper, unused, moved), sharper, moved);
         step.extra_sigma_diameters *= 0.5;
     }
     const Timer timer(moved.seconds.likelihood);
-    const PixelCost cost = refined_cost(moved.camera_from_object, context, refinement);
+    const PixelCost cost = refined_cost(moved.camera_from_object, context, options);
     moved.cost = cost.cost;
     moved.support = cost.support();
     moved.gain = cost.gain;
     moved.agreement = cost.agreement();
-    moved.log_evidence = log_evidence(cost, context.pixel_cost, refinement.rays_per_evidence);
+    moved.log_evidence = log_evidence(cost, context.pixel_cost, options.rays_per_evidence);
     return moved;
 }
 
-PixelCost refined_cost(const Pose& camera_from_object, const StepContext& context, const Refinement& refinement) {
-    PixelCostOptions options = context.pixel_cost;
-    options.extra_sigma_m = refinement.cost_sigma_diameters * context.views.extent().diameter_m();
-    options.outline_sigma_m = options.extra_sigma_m;
-    options.with_outline = refinement.outline;
+PixelCost refined_cost(const Pose& camera_from_object, const StepContext& context, const RefinementOptions& options) {
+    PixelCostOptions pixel_cost = context.pixel_cost;
+    pixel_cost.extra_sigma_m = options.cost_sigma_diameters * context.views.extent().diameter_m();
+    pixel_cost.outline_sigma_m = pixel_cost.extra_sigma_m;
+    pixel_cost.with_outline = options.outline;
     const View view = context.views.generate(camera_from_object, context.observed.camera);
-    return pixel_cost(view, camera_from_object, context.observed, options);
+    return nearpose::pixel_cost(view, camera_from_object, context.observed, pixel_cost);
 }
 
 }  // namespace nearpose

@@ -1,12 +1,46 @@
 // How one particle is moved and weighed: pure functions of (pose, observation).
 #pragma once
 
-#include "core/method.hpp"
+#include <string>
+
+#include "core/base/random.hpp"
+#include "core/evidence/likelihood.hpp"
 #include "core/observation/observation.hpp"
 #include "core/pose_solver.hpp"
 #include "core/view_generator.hpp"
 
 namespace nearpose {
+
+enum class Association { kNearest, kProjective };
+
+// The gradient step of one particle: a few rounds of correspondence and least squares.
+struct GradientStep {
+    Association association = Association::kProjective;
+    double max_distance_diameters = 0.1;  // of a pair
+    double extra_sigma_diameters = 0.01;  // added to the sensor's noise: how far off the pose may still be
+    double max_normal_angle_rad = 0.0;    // between a pair's normals; 0: not checked
+    int consensus_draws = 0;              // of the sample-consensus rejection; 0: none
+    double consensus_distance_diameters = 0.02;
+    int rounds = 3;          // 0: the pose is weighed where it is
+    double step_size = 1.0;  // gamma: the fraction of each solve that is taken, along the geodesic
+    int max_rays = 768;      // of the view
+};
+
+// The refinement of a mode: the same on more rays, with a tolerance that shrinks.
+struct RefinementOptions {
+    int rounds = 5;                              // 0: the mode is weighed where it is
+    int rounds_per_view = 2;                     // a view is cast anew every so many: one moves it less than its rays
+    int max_rays = 6000;                         // of the view
+    double first_extra_sigma_diameters = 0.006;  // added to the sensor's noise in the first round, halved every round
+    double gate_sigmas = 5.0;                    // a pair farther apart is not of the same surface
+    double cost_sigma_diameters = 0.002;         // tolerance of the cost that decides between modes
+    bool outline = true;                         // a face that is coplanar with its surroundings is no object
+    double rays_per_evidence = 10.0;             // neighbouring rays share errors: so many count as one
+};
+
+// Throw std::invalid_argument naming field, value and bound; `name` comes before the field.
+void validate(const GradientStep& step, const std::string& name);
+void validate(const RefinementOptions& options, const std::string& name);
 
 // Times of the stages, summed over particles and threads [s].
 struct StageSeconds {
@@ -62,9 +96,9 @@ MovedParticle move_particle(const Pose& camera_from_object, const StepContext& c
 
 // A mode on its way to the bottom: like move_particle, but the view is cast anew every other round, pairs are
 // projective, and the extra noise halves from round to round.
-MovedParticle refine_mode(const Pose& camera_from_object, const StepContext& context, const Refinement& refinement);
+MovedParticle refine_mode(const Pose& camera_from_object, const StepContext& context, const RefinementOptions& options);
 
 // The pixels' verdicts on a refined pose.
-PixelCost refined_cost(const Pose& camera_from_object, const StepContext& context, const Refinement& refinement);
+PixelCost refined_cost(const Pose& camera_from_object, const StepContext& context, const RefinementOptions& options);
 
 }  // namespace nearpose

@@ -41,9 +41,9 @@ void diffuse(ParticleSet& particles, const Diffusion& diffusion, const Eigen::Ve
 }
 
 void update_weights(ParticleSet& particles, const std::vector<double>& negative_log_likelihoods) {
-    assert(negative_log_likelihoods.size() == particles.weights.size());
-    for (std::size_t i = 0; i < particles.weights.size(); ++i)
-        particles.weights[i] = 0.5 * (particles.weights[i] + negative_log_likelihoods[i]);
+    assert(negative_log_likelihoods.size() == particles.negative_log_weights.size());
+    for (std::size_t i = 0; i < particles.negative_log_weights.size(); ++i)
+        particles.negative_log_weights[i] = 0.5 * (particles.negative_log_weights[i] + negative_log_likelihoods[i]);
 }
 
 double effective_sample_size(const std::vector<double>& weights) {
@@ -55,11 +55,11 @@ double effective_sample_size(const std::vector<double>& weights) {
 ParticleSet systematic_resample(const ParticleSet& particles, int count, std::uint64_t seed, std::uint64_t step) {
     const int size = particles.size();
     if (size == 0) return particles;
-    const std::vector<double> p = probabilities(particles.weights);
+    const std::vector<double> p = probabilities(particles.negative_log_weights);
     const double offset = RandomStream(seed, step, 0, RandomPurpose::kResampling).uniform();
     ParticleSet resampled;
     resampled.poses.reserve(count);
-    resampled.weights.assign(count, 0.0);
+    resampled.negative_log_weights.assign(count, 0.0);
     int last_possible = size - 1;  // rounding of the sum may let the last pointer run past it
     while (last_possible > 0 && p[last_possible] == 0.0) --last_possible;
     double cumulative = p[0];

@@ -10,11 +10,11 @@
 
 namespace nearpose {
 
-// Parallel arrays. `weights` are the paper's w: negative log-weights up to an offset, so small is good and the MAP is
-// the minimum; they need no normalisation.
+// Parallel arrays. The negative log-weights are the paper's w, up to an offset: small is good, the MAP is the minimum,
+// and they need no normalisation.
 struct ParticleSet {
     std::vector<Pose> poses;  // camera_from_object
-    std::vector<double> weights;
+    std::vector<double> negative_log_weights;
 
     int size() const { return static_cast<int>(poses.size()); }
 };

@@ -18,12 +18,12 @@ class CellSum {
     static constexpr int kSize = 14;  // even, so that the compiler takes two numbers at a time
     using Row = Eigen::Matrix<double, kSize, 1>;
 
-    void add(const SensorField::Row& place, const Row& row, double weight, NormalEquations& equations) {
+    void add(const SensorField::Row& place, const Row& row, double weight, FitEquations& equations) {
         if (place.unknowns != unknowns_) flush(equations);
         unknowns_ = place.unknowns;
         add_lower_half(row, weight * row);
     }
-    void flush(NormalEquations& equations) {
+    void flush(FitEquations& equations) {
         std::array<Eigen::Index, kUsed> index{};
         for (int i = 0; i < kUsed; ++i)
             index[i] = i < 6 ? i : 6 + (i < 11 ? unknowns_[i - 6] : equations.unknowns + i - (kUsed - 1));
@@ -110,8 +110,8 @@ struct FaceInImage {
 
 }  // namespace
 
-NormalEquations linearise(const Linearisation& at, const View& view, const SensorField& field,
-                          const StepContext& context) {
+FitEquations linearise(const Linearisation& at, const View& view, const SensorField& field,
+                       const StepContext& context) {
     const ObservedGrid& observed = context.observed;
     const SensorModel& sensor = context.observation.sensor();
     const Eigen::Vector3d centre = context.views.extent().centre_in_object();
@@ -122,7 +122,7 @@ NormalEquations linearise(const Linearisation& at, const View& view, const Senso
     const double shared = rays_per_fine_error(sensor, observed.grid.stride);
     const double field_m2 = sensor.systematic_sigma_m * sensor.systematic_sigma_m;
     const double extra_m2 = at.extra_sigma_m * at.extra_sigma_m;
-    NormalEquations equations(field.num_unknowns() + 1);
+    FitEquations equations(field.num_unknowns() + 1);
     equations.scaled_residuals.reserve(view.size());
     CellSum cell;
     const PinholeCamera& camera = context.observation.camera();

@@ -18,8 +18,8 @@ struct Linearisation {
 
 // Over (twist about the model's centre, the field's unknowns, the part's scale about its centre against its CAD), at
 // the pose and at zero errors.
-struct NormalEquations {
-    explicit NormalEquations(Eigen::Index unknowns_beside_pose)
+struct FitEquations {
+    explicit FitEquations(Eigen::Index unknowns_beside_pose)
         : sums(Eigen::MatrixXd::Zero(6 + unknowns_beside_pose + 1, 6 + unknowns_beside_pose + 1)),
           unknowns(unknowns_beside_pose) {}
 
@@ -29,7 +29,6 @@ struct NormalEquations {
 };
 
 // The rays keep the faces that they met in `view`, which was cast at a pose near by.
-NormalEquations linearise(const Linearisation& at, const View& view, const SensorField& field,
-                          const StepContext& context);
+FitEquations linearise(const Linearisation& at, const View& view, const SensorField& field, const StepContext& context);
 
 }  // namespace nearpose

@@ -51,7 +51,7 @@ SensorModel fitted_part(const SensorModel& sensor, const Misfit& misfit) {
     return fitted;
 }
 
-Problem problem_of(const NormalEquations& equations, const Misfit& misfit, const SensorField& field,
+Problem problem_of(const FitEquations& equations, const Misfit& misfit, const SensorField& field,
                    const StepContext& context) {
     const SensorModel& sensor = context.observation.sensor();
     Problem problem;
@@ -117,7 +117,7 @@ Matrix6d part_scale_covariance(const Problem& problem, const Eigen::LLT<Eigen::M
 
 }  // namespace
 
-FineFit fit_finely(const Pose& start, const StepContext& context) {
+JointFit fit_jointly(const Pose& start, const StepContext& context) {
     const SensorModel& sensor = context.observation.sensor();
     const SensorField field = field_over(context.observation.camera(), sensor);
     const ModelExtent& extent = context.views.extent();
@@ -125,12 +125,12 @@ FineFit fit_finely(const Pose& start, const StepContext& context) {
     // Of any of the model's points: less than the first is nothing, less than the second meets the same faces.
     const double nothing_m = 0.2 * sigma_m, same_faces_m = sigma_m;
     Linearisation at{start, Eigen::VectorXd::Zero(field.num_unknowns()), 0.0};
-    FineFit fit;
+    JointFit fit;
     View view = cast(start, context);
     for (int round = 0; round < kMaxRounds; ++round) {
         // A start that is off by little more than the noise is drawn in from farther at first.
         at.extra_sigma_m = round == 0 ? 2.0 * sensor.systematic_sigma_m : 0.0;
-        const NormalEquations equations = linearise(at, view, field, context);
+        const FitEquations equations = linearise(at, view, field, context);
         const Misfit misfit{round == 0 ? 0.0 : unit_sigma(equations.scaled_residuals)};  // none before it was fitted
         const Problem problem = problem_of(equations, misfit, field, context);
         const Eigen::LLT<Eigen::MatrixXd> factor = factor_of(problem);

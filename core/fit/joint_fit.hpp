@@ -3,12 +3,12 @@
 // the pose far better than is so.
 #pragma once
 
-#include "core/filter/gradient_step.hpp"
 #include "core/base/pose.hpp"
+#include "core/filter/gradient_step.hpp"
 
 namespace nearpose {
 
-struct FineFit {
+struct JointFit {
     Pose camera_from_object;
     Matrix6d covariance = Matrix6d::Zero();  // of the twist about the model's centre, in object axes, rotation first
     int pairs = 0;
@@ -23,7 +23,7 @@ struct FineFit {
 // with the field's nodes and the scale as unknowns of known variance. Where residuals are larger than the sensor
 // explains (variance_components.hpp) they weigh less, and the covariance grows with them and with the field that is
 // seen. A weak prior (1 rad, one diameter) stands in where the pairs say nothing.
-FineFit fit_finely(const Pose& start, const StepContext& context);
+JointFit fit_jointly(const Pose& start, const StepContext& context);
 
 // The covariance alone, at a pose that is kept.
 Matrix6d covariance_at(const Pose& camera_from_object, const StepContext& context);

@@ -67,14 +67,14 @@ void move_track(Track& track, const std::optional<Pose>& now_from_before, const 
     add_to_pose(track, track.object_motion.rotation_rad, track.object_motion.translation_m);
 }
 
-bool contradicts(const Track& predicted, const FineFit& observed, const Eigen::Vector3d& centre_in_object) {
+bool contradicts(const Track& predicted, const JointFit& observed, const Eigen::Vector3d& centre_in_object) {
     constexpr double kRejectedBeyond = 22.46;  // 99.9 % of chi-square with 6 degrees of freedom
     const Twist apart = twist_about(observed.camera_from_object, predicted.camera_from_object, centre_in_object);
     const Matrix6d sum = predicted.covariance + observed.covariance;
     return apart.dot(sum.llt().solve(apart)) > kRejectedBeyond;
 }
 
-Track correct_track(const Track& predicted, const FineFit& observed, const Eigen::Vector3d& centre_in_object) {
+Track correct_track(const Track& predicted, const JointFit& observed, const Eigen::Vector3d& centre_in_object) {
     const Twist to_prediction =
         twist_about(observed.camera_from_object, predicted.camera_from_object, centre_in_object);
     const bool rejected = contradicts(predicted, observed, centre_in_object);

@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "core/fit/joint_fit.hpp"
 #include "core/base/pose.hpp"
+#include "core/fit/joint_fit.hpp"
 
 namespace nearpose {
 
@@ -39,12 +39,12 @@ void move_track(Track& track, const std::optional<Pose>& now_from_before, const 
                 const Eigen::Vector3d& centre_in_object);
 
 // Whether they are farther apart than their spreads make likely (99.9 %).
-bool contradicts(const Track& predicted, const FineFit& observed, const Eigen::Vector3d& centre_in_object);
+bool contradicts(const Track& predicted, const JointFit& observed, const Eigen::Vector3d& centre_in_object);
 
 // Prediction and observation brought together. The errors of both come from the same sensor, frame after frame, so the
 // mean is that of a Kalman filter, but along each direction (of the basis in which both are independent) the spread
 // falls to no less than half-way between a Kalman filter's and the better of the two. A prediction that the observation
 // contradicts is left out: the object was moved.
-Track correct_track(const Track& predicted, const FineFit& observed, const Eigen::Vector3d& centre_in_object);
+Track correct_track(const Track& predicted, const JointFit& observed, const Eigen::Vector3d& centre_in_object);
 
 }  // namespace nearpose

@@ -11,9 +11,9 @@ constexpr double kVoxelDiameters = 1.0 / 80.0;
 constexpr int kReachVoxels = 5;
 constexpr float kSameSide = 0.7F;  // cosine between the normals of what may be one surface
 
-std::vector<SurfaceAnchor> surface_of(const ViewGenerator& views) {
+std::vector<OrientedPoint> surface_of(const ViewGenerator& views) {
     constexpr int kDirections = 128, kSide = 64;
-    std::vector<SurfaceAnchor> surface;
+    std::vector<OrientedPoint> surface;
     for (const Eigen::Vector3d& direction : directions_all_around(kDirections)) {
         const View view = view_from(views, direction, kSide);
         for (std::size_t k = 0; k < view.size(); ++k)
@@ -24,7 +24,7 @@ std::vector<SurfaceAnchor> surface_of(const ViewGenerator& views) {
 
 }  // namespace
 
-SurfaceField::SurfaceField(const ViewGenerator& views) : centre_in_object_(views.extent().centre_in_object()) {
+ClosestPointGrid::ClosestPointGrid(const ViewGenerator& views) : centre_in_object_(views.extent().centre_in_object()) {
     const ModelExtent& extent = views.extent();
     const double voxel_m = kVoxelDiameters * extent.diameter_m();
     reach_m_ = kReachVoxels * voxel_m;
@@ -39,19 +39,19 @@ SurfaceField::SurfaceField(const ViewGenerator& views) : centre_in_object_(views
 }
 
 // The first sample in each voxel stands for it.
-void SurfaceField::put_in(const std::vector<SurfaceAnchor>& surface) {
-    for (const SurfaceAnchor& anchor : surface) {
-        const Eigen::Vector3i voxel = ((anchor.point_in_object - origin_in_object_) * voxels_per_m_).cast<int>();
+void ClosestPointGrid::put_in(const std::vector<OrientedPoint>& surface) {
+    for (const OrientedPoint& point_of_model : surface) {
+        const Eigen::Vector3i voxel = ((point_of_model.point - origin_in_object_) * voxels_per_m_).cast<int>();
         if (voxel.minCoeff() < 0 || ((size_ - voxel).array() <= 0).any()) continue;
         int& sample = voxels_[index_of(voxel)];
         if (sample >= 0) continue;
         sample = static_cast<int>(samples_.size());
-        samples_.push_back(anchor);
+        samples_.push_back(point_of_model);
     }
 }
 
 // Each round every voxel takes over from its neighbours the sample that is nearest to it.
-void SurfaceField::spread(int rounds) {
+void ClosestPointGrid::spread(int rounds) {
     const auto middle = [&](const Eigen::Vector3i& voxel) -> Eigen::Vector3f {
         return origin_in_object_ + (voxel.cast<float>().array() + 0.5F).matrix() / voxels_per_m_;
     };
@@ -63,14 +63,14 @@ void SurfaceField::spread(int rounds) {
                     const Eigen::Vector3i voxel(x, y, z);
                     const Eigen::Vector3f here = middle(voxel);
                     int& best = voxels_[index_of(voxel)];
-                    float least = best < 0 ? 1e30F : (samples_[best].point_in_object - here).squaredNorm();
+                    float least = best < 0 ? 1e30F : (samples_[best].point - here).squaredNorm();
                     for (int axis = 0; axis < 3; ++axis) {
                         for (const int side : {-1, 1}) {
                             Eigen::Vector3i beside = voxel;
                             beside[axis] += side;
                             const int other = before[index_of(beside)];
                             if (other < 0) continue;
-                            const float distance = (samples_[other].point_in_object - here).squaredNorm();
+                            const float distance = (samples_[other].point - here).squaredNorm();
                             if (distance >= least) continue;
                             least = distance;
                             best = other;
@@ -82,8 +82,8 @@ void SurfaceField::spread(int rounds) {
     }
 }
 
-double share_on_surface(const SurfaceField& field, const Pose& camera_from_object,
-                        const std::vector<SurfaceAnchor>& measured, std::size_t count, double tolerance_m) {
+double inlier_share_on(const ClosestPointGrid& field, const Pose& camera_from_object,
+                       const std::vector<OrientedPoint>& measured, std::size_t count, double tolerance_m) {
     const Pose object_from_camera = camera_from_object.inverse();
     const Eigen::Matrix3f rotation = object_from_camera.rotation_matrix().cast<float>();
     const Eigen::Vector3f translation = object_from_camera.translation.cast<float>();
@@ -91,19 +91,19 @@ double share_on_surface(const SurfaceField& field, const Pose& camera_from_objec
     const std::size_t end = std::min(count, measured.size());
     int on_surface = 0;
     for (std::size_t k = 0; k < end; ++k) {
-        const Eigen::Vector3f point = rotation * measured[k].point_in_object + translation;
-        const SurfaceAnchor* surface = field.nearest(point);
+        const Eigen::Vector3f point = rotation * measured[k].point + translation;
+        const OrientedPoint* surface = field.nearest(point);
         if (surface == nullptr) continue;
-        const Eigen::Vector3f off = point - surface->point_in_object;
-        const float along = surface->normal_in_object.dot(off);
+        const Eigen::Vector3f off = point - surface->point;
+        const float along = surface->normal.dot(off);
         on_surface += std::abs(along) < tolerance && off.squaredNorm() < 4.0F * tolerance * tolerance &&
-                      surface->normal_in_object.dot(rotation * measured[k].normal_in_object) > kSameSide;
+                      surface->normal.dot(rotation * measured[k].normal) > kSameSide;
     }
     return end > 0 ? static_cast<double>(on_surface) / static_cast<double>(end) : 0.0;
 }
 
-Pose pulled_onto_surface(const SurfaceField& field, const Pose& camera_from_object,
-                         const std::vector<SurfaceAnchor>& measured, int rounds, double tolerance_m) {
+Pose aligned_to_surface(const ClosestPointGrid& field, const Pose& camera_from_object,
+                        const std::vector<OrientedPoint>& measured, int rounds, double tolerance_m) {
     constexpr float kAlike = 0.5F;                 // cosine: while the pose is still off
     constexpr double kDamping = 1.0;               // points
     const double scale_m = 4.0 * field.reach_m();  // lengths in it weigh as turns
@@ -117,13 +117,13 @@ Pose pulled_onto_surface(const SurfaceField& field, const Pose& camera_from_obje
         const auto gate = static_cast<float>(gate_m);
         Eigen::Matrix<float, 6, 6> A = static_cast<float>(kDamping) * Eigen::Matrix<float, 6, 6>::Identity();
         Eigen::Matrix<float, 6, 1> b = Eigen::Matrix<float, 6, 1>::Zero();
-        for (const SurfaceAnchor& anchor : measured) {
-            const Eigen::Vector3f point = rotation * anchor.point_in_object + translation;
-            const SurfaceAnchor* surface = field.nearest(point);
+        for (const OrientedPoint& point_of_model : measured) {
+            const Eigen::Vector3f point = rotation * point_of_model.point + translation;
+            const OrientedPoint* surface = field.nearest(point);
             if (surface == nullptr) continue;
-            const Eigen::Vector3f& normal = surface->normal_in_object;
-            const float off = normal.dot(point - surface->point_in_object);
-            if (std::abs(off) > gate || normal.dot(rotation * anchor.normal_in_object) < kAlike) continue;
+            const Eigen::Vector3f& normal = surface->normal;
+            const float off = normal.dot(point - surface->point);
+            if (std::abs(off) > gate || normal.dot(rotation * point_of_model.normal) < kAlike) continue;
             // Moving the object by a twist moves the measured point the other way in the object's frame.
             Eigen::Matrix<float, 6, 1> row;
             const Eigen::Vector3f arm = point - centre;

@@ -8,13 +8,13 @@
 
 namespace nearpose {
 
-class SurfaceField {
+class ClosestPointGrid {
   public:
     // Looks at the model from all around.
-    explicit SurfaceField(const ViewGenerator& views);
+    explicit ClosestPointGrid(const ViewGenerator& views);
 
     // The sampled point of the surface that is nearest, to within a voxel; null farther than about reach_m from it.
-    const SurfaceAnchor* nearest(const Eigen::Vector3f& point_in_object) const {
+    const OrientedPoint* nearest(const Eigen::Vector3f& point_in_object) const {
         const Eigen::Vector3f at = (point_in_object - origin_in_object_) * voxels_per_m_;
         if (!(at.minCoeff() >= 0.0F)) return nullptr;
         const Eigen::Vector3f size = size_.cast<float>();
@@ -30,10 +30,10 @@ class SurfaceField {
     std::size_t index_of(const Eigen::Vector3i& voxel) const {
         return (static_cast<std::size_t>(voxel.z()) * size_.y() + voxel.y()) * size_.x() + voxel.x();
     }
-    void put_in(const std::vector<SurfaceAnchor>& surface);
+    void put_in(const std::vector<OrientedPoint>& surface);
     void spread(int rounds);
 
-    std::vector<SurfaceAnchor> samples_;  // at most one for each voxel
+    std::vector<OrientedPoint> samples_;  // at most one for each voxel
     std::vector<int> voxels_;             // of samples_; -1: none near
     Eigen::Vector3f origin_in_object_ = Eigen::Vector3f::Zero();
     Eigen::Vector3d centre_in_object_;
@@ -44,11 +44,11 @@ class SurfaceField {
 
 // Share of the measured points (with their normals, in camera coordinates) that lie on the model's surface to within
 // the tolerance, in 0..1; of the first `count`.
-double share_on_surface(const SurfaceField& field, const Pose& camera_from_object,
-                        const std::vector<SurfaceAnchor>& measured, std::size_t count, double tolerance_m);
+double inlier_share_on(const ClosestPointGrid& field, const Pose& camera_from_object,
+                       const std::vector<OrientedPoint>& measured, std::size_t count, double tolerance_m);
 
 // camera_from_object after `rounds` point-to-plane steps that pull the measured points onto the model's surface.
-Pose pulled_onto_surface(const SurfaceField& field, const Pose& camera_from_object,
-                         const std::vector<SurfaceAnchor>& measured, int rounds, double tolerance_m);
+Pose aligned_to_surface(const ClosestPointGrid& field, const Pose& camera_from_object,
+                        const std::vector<OrientedPoint>& measured, int rounds, double tolerance_m);
 
 }  // namespace nearpose

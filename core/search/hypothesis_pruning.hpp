@@ -3,24 +3,24 @@
 
 #include <vector>
 
-#include "core/search/surfels.hpp"
 #include "core/search/closest_point_grid.hpp"
+#include "core/search/surfels.hpp"
 
 namespace nearpose {
 
-struct Guess {
+struct PoseHypothesis {
     Pose camera_from_object;
     double share = 0.0;  // of the measured points that lie on the model, in 0..1; tells close up. 0: no pose
-    double gain = 0.0;   // of the model's points, see gain_on_patches; tells a part among other things
+    double gain = 0.0;   // of the model's points, see evidence_gain; tells a part among other things
 };
 
-// What all guesses are held against.
-struct Screen {
-    const SurfaceField& surface;
-    const PatchGrid& patches;
+// What all hypotheses are held against.
+struct PruningScene {
+    const ClosestPointGrid& surface;
+    const SurfelGrid& surfels;
     const PinholeCamera& camera;
-    std::vector<SurfaceAnchor> measured;  // telling_points of the patches
-    std::vector<SurfaceAnchor> model;     // some of its surface; empty: the share alone decides
+    std::vector<OrientedPoint> measured;  // balanced_sample of the surfels
+    std::vector<OrientedPoint> model;     // some of its surface; empty: the share alone decides
     double tolerance_m = 0.0;             // within which model and depth agree, as a start
     double diameter_m = 0.0;              // of the model
     int num_threads = 1;
@@ -28,19 +28,19 @@ struct Screen {
 
 // About `count` of the measured oriented points, as often as they tell something: a plane that fills the view gives
 // few. The first ones are spread over the image as all are.
-std::vector<SurfaceAnchor> telling_points(const PatchGrid& patches, std::size_t count);
+std::vector<OrientedPoint> balanced_sample(const SurfelGrid& surfels, std::size_t count);
 
 // How many more of the model's points (the first `count`) that face the camera lie within the tolerance of the measured
 // surface than lie before it, where the sensor looked through them; each counts with the cosine of its slope and, where
-// it agrees, with the weight of the patch. Those deep before it count up to three times, those behind something say
+// it agrees, with the weight of the surfel. Those deep before it count up to three times, those behind something say
 // nothing: they may be hidden.
-double gain_on_patches(const Screen& screen, const Pose& camera_from_object, std::size_t count, double tolerance_m);
+double evidence_gain(const PruningScene& scene, const Pose& camera_from_object, std::size_t count, double tolerance_m);
 
 // A first look, which costs a microsecond.
-Guess glanced_at(const Screen& screen, const Pose& camera_from_object);
+PoseHypothesis coarsely_scored(const PruningScene& scene, const Pose& camera_from_object);
 
 // The fewer are left, the closer each is looked at, and those that are near the object are pulled onto it on the way.
 // Best by share and best by gain in turns, at most one from each coarse cell of poses; `count` or fewer.
-std::vector<Pose> screened(std::vector<Guess> guesses, const Screen& screen, int count);
+std::vector<Pose> prune(std::vector<PoseHypothesis> hypotheses, const PruningScene& scene, int count);
 
 }  // namespace nearpose

@@ -25,26 +25,26 @@ View view_from(const ViewGenerator& views, const Eigen::Vector3d& direction_in_o
     return views.generate(camera_looking_along(direction_in_object, views.extent()), camera);
 }
 
-std::vector<SurfaceAnchor> find_anchors(const ViewGenerator& views) {
+std::vector<OrientedPoint> sample_surface(const ViewGenerator& views) {
     constexpr int kDirections = 32, kSide = 64, kAnchors = 4000;
-    std::vector<SurfaceAnchor> all;
+    std::vector<OrientedPoint> all;
     for (const Eigen::Vector3d& direction : directions_all_around(kDirections)) {
         const View view = view_from(views, direction, kSide);
         for (std::size_t p = 0; p < view.size(); ++p)
             all.push_back({view.points_in_object[p], view.normals_in_object[p]});
     }
-    std::vector<SurfaceAnchor> anchors;
+    std::vector<OrientedPoint> points;
     const std::size_t every = std::max<std::size_t>(1, all.size() / kAnchors);
-    for (std::size_t p = 0; p < all.size(); p += every) anchors.push_back(all[p]);
-    return anchors;
+    for (std::size_t p = 0; p < all.size(); p += every) points.push_back(all[p]);
+    return points;
 }
 
-Pose laid_on(const SurfaceAnchor& anchor, const SurfaceAnchor& measured, double turn_rad) {
-    const Eigen::Vector3d normal = measured.normal_in_object.cast<double>();
+Pose pose_aligning(const OrientedPoint& point_of_model, const OrientedPoint& measured, double turn_rad) {
+    const Eigen::Vector3d normal = measured.normal.cast<double>();
     const Eigen::Quaterniond turn(Eigen::AngleAxisd(turn_rad, normal));
-    const auto align = Eigen::Quaterniond::FromTwoVectors(anchor.normal_in_object.cast<double>(), normal);
+    const auto align = Eigen::Quaterniond::FromTwoVectors(point_of_model.normal.cast<double>(), normal);
     const Eigen::Quaterniond rotation = (turn * align).normalized();
-    return {rotation, measured.point_in_object.cast<double>() - rotation * anchor.point_in_object.cast<double>()};
+    return {rotation, measured.point.cast<double>() - rotation * point_of_model.point.cast<double>()};
 }
 
 }  // namespace nearpose

@@ -9,9 +9,9 @@
 namespace nearpose {
 
 // A point of the model's surface that can be seen from outside, with its unit normal.
-struct SurfaceAnchor {
-    Eigen::Vector3f point_in_object;  // [m]
-    Eigen::Vector3f normal_in_object;
+struct OrientedPoint {
+    Eigen::Vector3f point;  // [m]
+    Eigen::Vector3f normal;
 };
 
 // Unit vectors, spread evenly.
@@ -24,10 +24,10 @@ Pose camera_looking_along(const Eigen::Vector3d& direction_in_object, const Mode
 View view_from(const ViewGenerator& views, const Eigen::Vector3d& direction_in_object, int side);
 
 // Anchors from views of the model from all around, some thousands of them.
-std::vector<SurfaceAnchor> find_anchors(const ViewGenerator& views);
+std::vector<OrientedPoint> sample_surface(const ViewGenerator& views);
 
-// camera_from_object that lays an anchor on a measured point (in camera coordinates), normal on normal, turned about
-// it.
-Pose laid_on(const SurfaceAnchor& anchor, const SurfaceAnchor& measured, double turn_rad);
+// camera_from_object that lays an point_of_model on a measured point (in camera coordinates), normal on normal, turned
+// about it.
+Pose pose_aligning(const OrientedPoint& point_of_model, const OrientedPoint& measured, double turn_rad);
 
 }  // namespace nearpose

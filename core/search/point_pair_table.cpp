@@ -10,7 +10,7 @@ namespace nearpose {
 namespace {
 
 constexpr int kDistanceCells = 10, kAngleCells = 18;  // 10 degrees
-constexpr int kMaxPairAnchors = 1000;  // their pairs are a million
+constexpr int kMaxPairAnchors = 1000;                 // their pairs are a million
 
 // Which of the cells of equal angle a cosine lies in. Cosines come in bins so narrow that each meets at most one border
 // of the cells: a look-up instead of an arc cosine.
@@ -45,37 +45,37 @@ int angle_cell(float cosine) {
 
 }  // namespace
 
-AnchorPairs::AnchorPairs(const ViewGenerator& views)
-    : anchors_(find_anchors(views)),
+PointPairTable::PointPairTable(const ViewGenerator& views)
+    : points_(sample_surface(views)),
       surface_(views),
       diameter_m_(views.extent().diameter_m()),
       cells_(static_cast<std::size_t>(kDistanceCells) * kAngleCells * kAngleCells * kAngleCells) {
-    const int count = static_cast<int>(anchors_.size());
+    const int count = static_cast<int>(points_.size());
     const int every = std::max(1, count / kMaxPairAnchors);
     for (int i = 0; i < count; i += every) {
         for (int j = 0; j < count; j += every) {
-            const int cell = i == j ? -1 : cell_of(anchors_[i], anchors_[j]);
+            const int cell = i == j ? -1 : cell_of(points_[i], points_[j]);
             if (cell >= 0) cells_[cell].push_back({i, j});
         }
     }
-    largest_face_m2_ = largest_face(anchors_, 0.02 * diameter_m_);
+    largest_face_m2_ = largest_face(points_, 0.02 * diameter_m_);
 }
 
-int AnchorPairs::cell_of(const SurfaceAnchor& first, const SurfaceAnchor& second) const {
-    const Eigen::Vector3f line = second.point_in_object - first.point_in_object;
+int PointPairTable::cell_of(const OrientedPoint& first, const OrientedPoint& second) const {
+    const Eigen::Vector3f line = second.point - first.point;
     const double distance = line.norm();
     const double place = (distance / diameter_m_ - kMinDistance) / (kMaxDistance - kMinDistance);
     if (!(place >= 0.0 && place < 1.0)) return -1;
     const Eigen::Vector3f direction = line / static_cast<float>(distance);
-    const int angles = (angle_cell(first.normal_in_object.dot(direction)) * kAngleCells +
-                        angle_cell(second.normal_in_object.dot(direction))) *
-                           kAngleCells +
-                       angle_cell(first.normal_in_object.dot(second.normal_in_object));
+    const int angles =
+        (angle_cell(first.normal.dot(direction)) * kAngleCells + angle_cell(second.normal.dot(direction))) *
+            kAngleCells +
+        angle_cell(first.normal.dot(second.normal));
     return static_cast<int>(place * kDistanceCells) * kAngleCells * kAngleCells * kAngleCells + angles;
 }
 
-const std::vector<AnchorPairs::Pair>& AnchorPairs::alike(const SurfaceAnchor& first,
-                                                         const SurfaceAnchor& second) const {
+const std::vector<PointPairTable::Pair>& PointPairTable::matches(const OrientedPoint& first,
+                                                                 const OrientedPoint& second) const {
     static const std::vector<Pair> kNone;
     const int cell = cell_of(first, second);
     return cell < 0 ? kNone : cells_[cell];

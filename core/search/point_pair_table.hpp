@@ -10,21 +10,21 @@
 
 namespace nearpose {
 
-// Pairs of the model's anchors by how they lie to each other: distance, the angles of both normals to the line between
+// Pairs of the model's points by how they lie to each other: distance, the angles of both normals to the line between
 // them, and the normals' angle to each other.
-class AnchorPairs {
+class PointPairTable {
   public:
     // Looks at the model from all around; pairs from a tenth of its diameter to six tenths are kept.
-    explicit AnchorPairs(const ViewGenerator& views);
+    explicit PointPairTable(const ViewGenerator& views);
 
     struct Pair {
-        int first = 0, second = 0;  // of anchors()
+        int first = 0, second = 0;  // of points()
     };
     // Those that lie to each other as the two oriented points do, to within the cells of the table.
-    const std::vector<Pair>& alike(const SurfaceAnchor& first, const SurfaceAnchor& second) const;
+    const std::vector<Pair>& matches(const OrientedPoint& first, const OrientedPoint& second) const;
 
-    const std::vector<SurfaceAnchor>& anchors() const { return anchors_; }
-    const SurfaceField& surface() const { return surface_; }
+    const std::vector<OrientedPoint>& points() const { return points_; }
+    const ClosestPointGrid& surface() const { return surface_; }
     double diameter_m() const { return diameter_m_; }
     double largest_face_m2() const { return largest_face_m2_; }  // of the model's planes
     double min_distance_m() const { return kMinDistance * diameter_m_; }
@@ -32,10 +32,10 @@ class AnchorPairs {
 
   private:
     static constexpr double kMinDistance = 0.1, kMaxDistance = 0.6;              // diameters
-    int cell_of(const SurfaceAnchor& first, const SurfaceAnchor& second) const;  // -1: out of the table
+    int cell_of(const OrientedPoint& first, const OrientedPoint& second) const;  // -1: out of the table
 
-    std::vector<SurfaceAnchor> anchors_;
-    SurfaceField surface_;
+    std::vector<OrientedPoint> points_;
+    ClosestPointGrid surface_;
     double diameter_m_;
     double largest_face_m2_ = 0.0;
     std::vector<std::vector<Pair>> cells_;

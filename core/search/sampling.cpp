@@ -7,8 +7,8 @@
 
 namespace nearpose {
 
-ParticleSet start_on_sphere(const Observation& observation, const ModelExtent& extent, int count, std::uint64_t seed,
-                            std::uint64_t step) {
+ParticleSet sample_on_sphere(const Observation& observation, const ModelExtent& extent, int count, std::uint64_t seed,
+                             std::uint64_t step) {
     const Eigen::Vector3d centre_in_camera =
         observation.mean_distance_m() * observation.centroid_in_camera().normalized();
     ParticleSet particles;
@@ -17,36 +17,36 @@ ParticleSet start_on_sphere(const Observation& observation, const ModelExtent& e
         const Eigen::Quaterniond rotation = random.rotation();
         particles.poses.push_back({rotation, centre_in_camera - rotation * extent.centre_in_object()});
     }
-    particles.weights.assign(particles.poses.size(), 0.0);
+    particles.negative_log_weights.assign(particles.poses.size(), 0.0);
     return particles;
 }
 
-ParticleSet start_around(const Pose& camera_from_object, const Diffusion& spread, const ModelExtent& extent, int count,
-                         std::uint64_t seed, std::uint64_t step) {
+ParticleSet sample_around(const Pose& camera_from_object, const Diffusion& spread, const ModelExtent& extent, int count,
+                          std::uint64_t seed, std::uint64_t step) {
     ParticleSet particles;
     particles.poses.assign(count, camera_from_object);
-    particles.weights.assign(count, 0.0);
+    particles.negative_log_weights.assign(count, 0.0);
     diffuse(particles, spread, extent.centre_in_object(), seed, step);
     if (count > 0) particles.poses[0] = camera_from_object;
     return particles;
 }
 
-ParticleSet start_on_surface(const Observation& observation, const std::vector<SurfaceAnchor>& anchors, int count,
-                             std::uint64_t seed, std::uint64_t step, std::uint64_t first_stream) {
+ParticleSet sample_on_surface(const Observation& observation, const std::vector<OrientedPoint>& points, int count,
+                              std::uint64_t seed, std::uint64_t step, std::uint64_t first_stream) {
     std::vector<int> oriented;  // measured points whose normal is known
     for (std::size_t p = 0; p < observation.normals_in_camera().size(); ++p)
         if (!observation.normals_in_camera()[p].isZero()) oriented.push_back(static_cast<int>(p));
     ParticleSet particles;
-    if (anchors.empty() || oriented.empty()) return particles;
+    if (points.empty() || oriented.empty()) return particles;
     for (int i = 0; i < count; ++i) {
         RandomStream random(seed, step, first_stream + static_cast<std::uint64_t>(i), RandomPurpose::kStart);
         const int measured = oriented[random.below(static_cast<int>(oriented.size()))];
-        const SurfaceAnchor& anchor = anchors[random.below(static_cast<int>(anchors.size()))];
-        particles.poses.push_back(
-            laid_on(anchor, {observation.points_in_camera()[measured], observation.normals_in_camera()[measured]},
-                    random.uniform(0.0, 2.0 * M_PI)));
+        const OrientedPoint& point_of_model = points[random.below(static_cast<int>(points.size()))];
+        particles.poses.push_back(pose_aligning(
+            point_of_model, {observation.points_in_camera()[measured], observation.normals_in_camera()[measured]},
+            random.uniform(0.0, 2.0 * M_PI)));
     }
-    particles.weights.assign(particles.poses.size(), 0.0);
+    particles.negative_log_weights.assign(particles.poses.size(), 0.0);
     return particles;
 }
 

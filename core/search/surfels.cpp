@@ -19,14 +19,14 @@ struct Plane {
     }
 };
 
-// The plane of least squares through the points that `guess` holds.
-Plane refitted(const Plane& guess, const std::vector<Eigen::Vector3f>& points, double tolerance_m) {
+// The plane of least squares through the points that `hypothesis` holds.
+Plane refitted(const Plane& hypothesis, const std::vector<Eigen::Vector3f>& points, double tolerance_m) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-    Plane plane = guess;
+    Plane plane = hypothesis;
     plane.count = 0;
     for (const Eigen::Vector3f& point : points) {
-        if (!guess.holds(point, tolerance_m)) continue;
+        if (!hypothesis.holds(point, tolerance_m)) continue;
         const Eigen::Vector3d p = point.cast<double>();
         sum += p;
         squares += p * p.transpose();
@@ -62,18 +62,18 @@ Plane dominant_plane(const std::vector<Eigen::Vector3f>& points, double toleranc
     return best;
 }
 
-std::vector<Eigen::Vector3f> points_of(const std::vector<SurfaceAnchor>& surface, std::size_t count) {
+std::vector<Eigen::Vector3f> points_of(const std::vector<OrientedPoint>& surface, std::size_t count) {
     std::vector<Eigen::Vector3f> points;
     const std::size_t every = std::max<std::size_t>(1, surface.size() / count);
-    for (std::size_t k = 0; k < surface.size(); k += every) points.push_back(surface[k].point_in_object);
+    for (std::size_t k = 0; k < surface.size(); k += every) points.push_back(surface[k].point);
     return points;
 }
 
 // About 500 of the measured points that are in no plane yet.
-std::vector<Eigen::Vector3f> points_left(const std::vector<Patch>& patches) {
+std::vector<Eigen::Vector3f> points_left(const std::vector<Surfel>& surfels) {
     std::vector<Eigen::Vector3f> points, some;
-    for (const Patch& patch : patches)
-        if (!patch.in_plane && patch.point_in_camera.z() > 0.0F) points.push_back(patch.point_in_camera);
+    for (const Surfel& surfel : surfels)
+        if (!surfel.in_plane && surfel.point_in_camera.z() > 0.0F) points.push_back(surfel.point_in_camera);
     const std::size_t every = std::max<std::size_t>(1, points.size() / 500);
     for (std::size_t p = 0; p < points.size(); p += every) some.push_back(points[p]);
     return some;
@@ -81,29 +81,29 @@ std::vector<Eigen::Vector3f> points_left(const std::vector<Patch>& patches) {
 
 // Finds the large planes. One that is larger than any face of the model is none of its faces: what lies in it says
 // little. Of one that may be a face, a start is not to be made from it alone: each counts as a small part of the view.
-void set_rarity(std::vector<Patch>& patches, double largest_face_m2, double tolerance_m, RandomStream random) {
+void set_rarity(std::vector<Surfel>& surfels, double largest_face_m2, double tolerance_m, RandomStream random) {
     constexpr int kPlanes = 3;
     constexpr double kLeastShare = 0.1;  // of the points
     for (int k = 0; k < kPlanes; ++k) {
-        const std::vector<Eigen::Vector3f> points = points_left(patches);
+        const std::vector<Eigen::Vector3f> points = points_left(surfels);
         const Plane plane = dominant_plane(points, tolerance_m, random);
         const double share_of_view = plane.count / std::max(1.0, static_cast<double>(points.size()));
         if (share_of_view < kLeastShare) return;
         const double size = largest_face_m2 / std::max(1e-12, plane.area_m2);
         const double weight = size < 1.0 ? size * size * size : 1.0;
-        for (Patch& patch : patches) {
-            if (patch.in_plane || !plane.holds(patch.point_in_camera, tolerance_m)) continue;
-            patch.in_plane = true;
-            patch.weight = weight;
-            patch.telling = std::min(weight, kLeastShare / share_of_view);
-            patch.rarity = std::min(patch.rarity, weight);
+        for (Surfel& surfel : surfels) {
+            if (surfel.in_plane || !plane.holds(surfel.point_in_camera, tolerance_m)) continue;
+            surfel.in_plane = true;
+            surfel.weight = weight;
+            surfel.balanced_draw_weight = std::min(weight, kLeastShare / share_of_view);
+            surfel.draw_weight = std::min(surfel.draw_weight, weight);
         }
     }
 }
 
 // The measured surface around a pixel: the plane of least squares through a window of pixels `reach` to each side, of
 // those that lie on one surface with the middle one. Holes and edges cost samples, not the normal.
-std::optional<SurfaceAnchor> measured_at(const Observation& observation, int pixel, int reach) {
+std::optional<OrientedPoint> measured_at(const Observation& observation, int pixel, int reach) {
     constexpr int kHalf = 2, kLeastSamples = 9;
     const PinholeCamera& camera = observation.camera();
     if (observation.states()[pixel] != PixelState::kCandidate) return std::nullopt;
@@ -127,49 +127,48 @@ std::optional<SurfaceAnchor> measured_at(const Observation& observation, int pix
     if (plane.count < kLeastSamples || !plane.holds(middle, tolerance_m)) return std::nullopt;
     Eigen::Vector3f normal = plane.normal.cast<float>();
     if (normal.dot(middle) > 0.0F) normal = -normal;
-    return SurfaceAnchor{middle, normal};
+    return OrientedPoint{middle, normal};
 }
 
 }  // namespace
 
-// Area of the largest flat face among the anchors.
-double largest_face(const std::vector<SurfaceAnchor>& anchors, double tolerance_m) {
-    const std::vector<Eigen::Vector3f> points = points_of(anchors, 600);
+// Area of the largest flat face among the points.
+double largest_face(const std::vector<OrientedPoint>& surface, double tolerance_m) {
+    const std::vector<Eigen::Vector3f> points = points_of(surface, 600);
     double largest_m2 = 0.0;
-    for (const SurfaceAnchor& anchor : anchors) {
+    for (std::size_t k = 0; k < std::min<std::size_t>(surface.size(), 400); ++k) {
         Plane plane;
-        plane.normal = anchor.normal_in_object.cast<double>();
-        plane.offset_m = plane.normal.dot(anchor.point_in_object.cast<double>());
-        if (&anchor - anchors.data() >= 400) break;
+        plane.normal = surface[k].normal.cast<double>();
+        plane.offset_m = plane.normal.dot(surface[k].point.cast<double>());
         largest_m2 = std::max(largest_m2, refitted(plane, points, tolerance_m).area_m2);
     }
     return largest_m2;
 }
 
-PatchGrid make_patches(const Observation& observation, int reach, double tolerance_m, double largest_face_m2,
-                       RandomStream random) {
-    constexpr double kPatches = 4000.0;
+SurfelGrid make_surfels(const Observation& observation, int reach, double tolerance_m, double largest_face_m2,
+                        RandomStream random) {
+    constexpr double kSurfels = 4000.0;
     const PinholeCamera& camera = observation.camera();
-    PatchGrid grid;
+    SurfelGrid grid;
     const PixelBox& box = observation.candidate_box();
     const double pixels = static_cast<double>(box.last_u - box.first_u) * (box.last_v - box.first_v);
-    grid.stride = std::max(1, static_cast<int>(std::sqrt(pixels / kPatches)));
+    grid.stride = std::max(1, static_cast<int>(std::sqrt(pixels / kSurfels)));
     grid.width = camera.width / grid.stride;
     grid.height = camera.height / grid.stride;
     for (int v = 0; v < grid.height; ++v) {
         for (int u = 0; u < grid.width; ++u) {
             const int middle = grid.stride / 2;
             const int pixel = (v * grid.stride + middle) * camera.width + u * grid.stride + middle;
-            const std::optional<SurfaceAnchor> measured = measured_at(observation, pixel, reach);
-            Patch patch;
+            const std::optional<OrientedPoint> measured = measured_at(observation, pixel, reach);
+            Surfel surfel;
             if (observation.states()[pixel] == PixelState::kCandidate)
-                patch.point_in_camera = observation.point_at(pixel).cast<float>();
-            patch.surface = measured.value_or(SurfaceAnchor{{0, 0, 0}, {0, 0, 0}});
-            patch.rarity = measured ? 1.0 : 0.0;
-            grid.patches.push_back(patch);
+                surfel.point_in_camera = observation.point_at(pixel).cast<float>();
+            surfel.surface = measured.value_or(OrientedPoint{{0, 0, 0}, {0, 0, 0}});
+            surfel.draw_weight = measured ? 1.0 : 0.0;
+            grid.surfels.push_back(surfel);
         }
     }
-    set_rarity(grid.patches, largest_face_m2, tolerance_m, random);
+    set_rarity(grid.surfels, largest_face_m2, tolerance_m, random);
     return grid;
 }
 

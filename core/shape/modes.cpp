@@ -38,9 +38,9 @@ void set_weights(std::vector<Mode>& modes) {
     for (Mode& mode : modes) mode.weight /= sum;
 }
 
-std::vector<Pose> rivals_of(const Pose& camera_from_object, const ModelExtent& extent, int count, std::uint64_t seed,
-                            std::uint64_t step) {
-    RandomStream random(seed, step, 0, RandomPurpose::kRivals);
+std::vector<Pose> alternatives_of(const Pose& camera_from_object, const ModelExtent& extent, int count,
+                                  std::uint64_t seed, std::uint64_t step) {
+    RandomStream random(seed, step, 0, RandomPurpose::kAlternatives);
     const Eigen::Vector3d size_m = extent.box_max_in_object - extent.box_min_in_object;
     std::vector<Pose> rivals;
     for (int k = 0; k < count; ++k) {

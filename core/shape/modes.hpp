@@ -37,7 +37,7 @@ void set_weights(std::vector<Mode>& modes);
 // Poses that a part may be mistaken for: quarter and half turns about the axes of its box, through its centre, and
 // shifts along them of up to half its extent (a row of bores repeats at its pitch). `count` random draws from the
 // stream (seed, step, 0).
-std::vector<Pose> rivals_of(const Pose& camera_from_object, const ModelExtent& extent, int count, std::uint64_t seed,
-                            std::uint64_t step);
+std::vector<Pose> alternatives_of(const Pose& camera_from_object, const ModelExtent& extent, int count,
+                                  std::uint64_t seed, std::uint64_t step);
 
 }  // namespace nearpose

@@ -20,7 +20,8 @@ struct AxisOfRevolution {
 struct Symmetries {
     std::vector<Pose> discrete;  // object_from_object; the identity is not listed
     std::vector<AxisOfRevolution> continuous;
-    std::vector<Pose> near;  // turns after which all but a detail is the same: what the part may be mistaken for
+    std::vector<Pose>
+        near_symmetries;  // turns after which all but a detail is the same: what the part may be mistaken for
 
     bool empty() const { return discrete.empty() && continuous.empty(); }
 };

@@ -1,7 +1,7 @@
 #include "core/update/assess.hpp"
 
-#include "core/fit/joint_fit.hpp"
 #include "core/base/parallel.hpp"
+#include "core/fit/joint_fit.hpp"
 #include "core/update/ray_grids.hpp"
 
 namespace nearpose {
@@ -28,7 +28,7 @@ Assessment assess(UpdateResult& result, const Belief& belief, const std::optiona
     const bool estimated = result.status == UpdateStatus::kEstimated;
     const Eigen::Vector3d centre = frame.model.centre_in_object();
     const Pose& pose = belief.tracked->camera_from_object;
-    const Refinement refinement = plan_of(belief.lock.phase, frame.method(), false).refinement;
+    const RefinementOptions refinement = plan_of(belief.lock.phase, frame.method(), false).refinement;
     const PixelGrid grid = ray_grid(frame, pose, refinement.max_rays);
     const StepContext context = frame.context(ledger.measured(grid, frame.observation), frame.method().step);
 
@@ -45,16 +45,16 @@ Assessment assess(UpdateResult& result, const Belief& belief, const std::optiona
     Evidence evidence;
     evidence.seen = estimated;
     evidence.pixels = refined_cost(pose, context, refinement);
-    evidence.rival_weight = belief.lock.alternatives_weight;
-    evidence.rivals_tried = belief.lock.alternatives_tried;
+    evidence.alternatives_weight = belief.lock.alternatives_weight;
+    evidence.alternatives_tried = belief.lock.alternatives_tried;
     evidence.covariance_about_centre = about_centre(result.covariance, centre);
     result.pixels = evidence.pixels;
-    result.verdict = judge(evidence, frame.options.tolerance, frame.options.symmetries);
+    result.verdict = judge(evidence, frame.options.tolerance, frame.options.symmetries, frame.method().verification);
 
     const double nats = log_evidence_over_nothing(evidence.pixels, frame.method().pixel_cost,
                                                   frame.method().refinement.rays_per_evidence);
-    return {result.verdict, convinces(evidence), result.verdict == Verdict::kLost ? 0.0 : evidence.pixels.agreement(),
-            nats * grid.stride * grid.stride};
+    return {result.verdict, is_verified(evidence, frame.method().verification),
+            result.verdict == Verdict::kLost ? 0.0 : evidence.pixels.agreement(), nats * grid.stride * grid.stride};
 }
 
 }  // namespace nearpose

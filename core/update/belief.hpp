@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "core/shape/modes.hpp"
 #include "core/filter/particles.hpp"
 #include "core/fit/track.hpp"
+#include "core/shape/modes.hpp"
 #include "core/update/phase.hpp"
 
 namespace nearpose {

@@ -17,18 +17,17 @@ bool less_evident(const Mode& a, const Mode& b) {
 // Where nothing is segmented a search compares modes all over the image with few rays on each. The chosen one and those
 // around it are told apart by as many rays on the object alone. The best of them becomes the choice.
 void disambiguate(Choice& choice, Situation situation, const Frame& frame, Ledger& ledger) {
-    constexpr std::size_t kMost = 4;  // beside the chosen one and its near-symmetric ones
     const Mode chosen = choice.mode;
     const Eigen::Vector3d centre = frame.model.centre_in_object();
     const double around_m = 0.5 * frame.model.diameter_m();
     std::vector<Mode> near = {chosen}, far;
     for (const Mode& mode : near_symmetric_modes(chosen, frame.model.symmetries)) near.push_back(mode);
-    const std::size_t most = near.size() + kMost;
+    const std::size_t most = near.size() + static_cast<std::size_t>(frame.method().preselection.disambiguated);
     for (const Mode& mode : choice.modes) {
         const double away_m = (mode.camera_from_object * centre - chosen.camera_from_object * centre).norm();
         (away_m < around_m && near.size() < most ? near : far).push_back(mode);
     }
-    if (frame.method().refinement.rivals > 0)
+    if (frame.method().hypotheses.alternatives > 0)
         for (const Mode& mode : best_alternatives({chosen}, situation, frame, ledger)) near.push_back(mode);
     bring_to_one_representative(near, frame.model);
     situation.window.around = chosen.camera_from_object;
@@ -47,7 +46,7 @@ void disambiguate(Choice& choice, Situation situation, const Frame& frame, Ledge
 }  // namespace
 
 Choice choose_map(const MovedParticles& moved, const Frame& frame) {
-    const int best = map_index(moved.particles.weights);
+    const int best = map_index(moved.particles.negative_log_weights);
     Choice choice;
     choice.seen = true;
     choice.mode = Mode{moved.particles.poses[best], moved.costs[best], 0.0};
@@ -58,15 +57,14 @@ Choice choose_map(const MovedParticles& moved, const Frame& frame) {
 }
 
 bool overturns(double challenger_log_evidence, double tracked_log_evidence, int stride, const Lock& lock,
-               const Refinement& refinement) {
-    const double margin = std::max(refinement.challenge_nats, lock.accepted_evidence / (stride * stride));
+               const ChoiceOptions& options) {
+    const double margin = std::max(options.challenge_nats, lock.accepted_evidence / (stride * stride));
     return challenger_log_evidence > tracked_log_evidence + margin;
 }
 
 Choice choose_mode(const Belief& belief, const MovedParticles& moved, const Situation& situation, const Frame& frame,
                    Ledger& ledger) {
     const Stopwatch watch;
-    const Refinement& refinement = situation.plan.refinement;
     Choice choice;
     std::vector<Mode> hypotheses = propose(belief, moved, situation, frame, ledger);
     const int count = ledger.affordable(Stage::kModes, static_cast<int>(hypotheses.size()), 1);
@@ -84,14 +82,14 @@ Choice choose_mode(const Belief& belief, const MovedParticles& moved, const Situ
     if (choice.modes.empty()) return choice;
     const Mode& tracked = refined.front();
     const Mode& challenger = *std::max_element(choice.modes.begin(), choice.modes.end(), less_evident);
-    const int stride = ray_grid(frame, situation.window.around, refinement.max_rays).stride;
-    const bool replaces =
-        !belief.tracked || overturns(challenger.log_evidence, tracked.log_evidence, stride, belief.lock, refinement);
+    const int stride = ray_grid(frame, situation.window.around, situation.plan.refinement.max_rays).stride;
+    const bool replaces = !belief.tracked || overturns(challenger.log_evidence, tracked.log_evidence, stride,
+                                                       belief.lock, frame.method().choice);
     choice.mode = replaces ? challenger : tracked;
     if (situation.searching() && !frame.observation.segmented()) disambiguate(choice, situation, frame, ledger);
     set_weights(choice.modes);
     ledger.seconds.refinement = watch.elapsed_s();
-    choice.seen = !(choice.mode.support < refinement.min_support);
+    choice.seen = !(choice.mode.support < frame.method().choice.min_support);
     choice.replaces_tracked = choice.seen && replaces && belief.tracked &&
                               !frame.model.same_mode(choice.mode.camera_from_object, tracked.camera_from_object);
     choice.score = std::clamp(1.0 - choice.mode.cost, 0.0, 1.0);

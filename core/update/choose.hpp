@@ -29,6 +29,6 @@ Choice choose_mode(const Belief& belief, const MovedParticles& moved, const Situ
 // Whether a challenger replaces the tracked mode: its log-odds must exceed the margin, or, where more of it is needed,
 // the evidence of the last accepted pose. `stride` is that of the rays that the log evidences are of [pixels].
 bool overturns(double challenger_log_evidence, double tracked_log_evidence, int stride, const Lock& lock,
-               const Refinement& refinement);
+               const ChoiceOptions& options);
 
 }  // namespace nearpose

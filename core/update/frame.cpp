@@ -8,7 +8,7 @@ StepContext Frame::context(const ObservedGrid& observed, const GradientStep& gra
     const double diameter_m = model.diameter_m();
     PixelCostOptions pixel_cost = method().pixel_cost;
     pixel_cost.extra_sigma_m = gradient_step.extra_sigma_diameters * diameter_m;
-    pixel_cost.deep_m = method().deep_diameters * diameter_m;
+    pixel_cost.free_space_depth_m = method().free_space_depth_diameters * diameter_m;
     return {*model.views,  solver,        observation, observed,
             gradient_step, method().cost, pixel_cost,  method().scale_by_overlap};
 }

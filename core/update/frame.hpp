@@ -11,8 +11,8 @@
 #include "core/options.hpp"
 #include "core/pose_solver.hpp"
 #include "core/result.hpp"
-#include "core/update/time_budget.hpp"
 #include "core/update/object_model.hpp"
+#include "core/update/time_budget.hpp"
 
 namespace nearpose {
 

@@ -16,7 +16,7 @@ int fit_rays(const Situation& situation, const Frame& frame) {
     const Observation& observation = frame.observation;
     const double noise = observation.sigma_m(observation.mean_distance_m()) / observation.sensor().sigma_floor_m;
     return static_cast<int>(
-        std::min<double>(method.refinement.max_rays, method.economy.fit_rays * std::max(1.0, noise)));
+        std::min<double>(method.refinement.max_rays, method.effort.fit_rays * std::max(1.0, noise)));
 }
 
 // Whether the image speaks for a fit at least as much as for the prediction that it contradicts, and says as much as
@@ -38,7 +38,7 @@ Matrix6d correct(Belief& belief, const Choice& choice, const Situation& situatio
     const Pose& chosen = choice.mode.camera_from_object;
     const PixelGrid grid = ray_grid_to_fit(frame, chosen, fit_rays(situation, frame));
     const StepContext context = frame.context(ledger.measured(grid, frame.observation), frame.method().step);
-    const FineFit fit = fit_finely(chosen, context);
+    const JointFit fit = fit_jointly(chosen, context);
     const Eigen::Vector3d centre = frame.model.centre_in_object();
     if (!belief.track || choice.replaces_tracked)
         belief.track = Track{fit.camera_from_object, fit.covariance, {}, fit.constant_covariance};
@@ -60,9 +60,9 @@ double weight_of_alternatives(const std::vector<Mode>& modes, const Pose& tracke
 
 // The particles learn of the chosen pose in place of their least likely one.
 void replace_least_likely(ParticleSet& particles, const Pose& chosen) {
-    const auto worst = std::max_element(particles.weights.begin(), particles.weights.end());
-    particles.poses[worst - particles.weights.begin()] = chosen;
-    *worst = particles.weights[map_index(particles.weights)];
+    const auto worst = std::max_element(particles.negative_log_weights.begin(), particles.negative_log_weights.end());
+    particles.poses[worst - particles.negative_log_weights.begin()] = chosen;
+    *worst = particles.negative_log_weights[map_index(particles.negative_log_weights)];
 }
 
 }  // namespace
@@ -75,9 +75,9 @@ void adopt(Belief& belief, const MovedParticles& moved, const Choice& choice) {
 std::optional<Matrix6d> fuse(Belief& belief, const Choice& choice, const Situation& situation, const Frame& frame,
                              Ledger& ledger) {
     std::optional<Matrix6d> covariance;
-    if (frame.method().refinement.fusion) covariance = correct(belief, choice, situation, frame, ledger);
+    if (frame.method().fusion) covariance = correct(belief, choice, situation, frame, ledger);
     std::optional<double> alternatives_weight;
-    if (ledger.effort.rivals > 0 && choice.all_refined)
+    if (ledger.effort.alternatives > 0 && choice.all_refined)
         alternatives_weight = weight_of_alternatives(choice.modes, belief.tracked->camera_from_object, frame.model);
     belief.lock = after_choice(belief.lock, choice.replaces_tracked, alternatives_weight);
     replace_least_likely(belief.particles, choice.mode.camera_from_object);

@@ -28,24 +28,23 @@ std::vector<Mode> in_turns(const std::vector<Mode>& modes, const std::vector<Pos
 // refinement on few rays where it puts the object: before that a wrong one may outdo the right one.
 std::vector<Mode> preselect(const std::vector<Mode>& particles, const Situation& situation, const Frame& frame,
                             Ledger& ledger) {
-    constexpr int kKept = 8, kRays = 800, kRounds = 3;
+    const PreselectionOptions& options = frame.method().preselection;
     const Stopwatch watch;
-    Refinement refinement = situation.plan.refinement;
-    refinement.rounds = std::min(refinement.rounds, kRounds);
-    std::vector<Mode> modes =
-        in_turns(frame.model.distinct(particles, refinement.shortlist), situation.best_from_pairs);
-    const int count = ledger.affordable(Stage::kShortlist, static_cast<int>(modes.size()), 1);
+    RefinementOptions refinement = situation.plan.refinement;
+    refinement.rounds = std::min(refinement.rounds, options.rounds);
+    std::vector<Mode> modes = in_turns(frame.model.distinct(particles, options.tried), situation.best_from_pairs);
+    const int count = ledger.affordable(Stage::kPreselection, static_cast<int>(modes.size()), 1);
     modes.resize(count);
     std::vector<MovedParticle> moved(modes.size());
     parallel_for(count, frame.options.num_threads, [&](int k) {
         const Pose& pose = modes[k].camera_from_object;
-        const ObservedGrid observed = observe(frame.observation, ray_grid_on_model(frame, pose, kRays));
+        const ObservedGrid observed = observe(frame.observation, ray_grid_on_model(frame, pose, options.rays));
         moved[k] = refine_mode(pose, frame.context(observed, frame.method().step), refinement);
         modes[k] = {moved[k].camera_from_object, -moved[k].gain * observed.grid.stride * observed.grid.stride, 0.0};
     });
     for (const MovedParticle& mode : moved) ledger.add(mode);
-    ledger.budget.took(Stage::kShortlist, count, watch.elapsed_s());
-    return frame.model.distinct(modes, kKept);
+    ledger.budget.took(Stage::kPreselection, count, watch.elapsed_s());
+    return frame.model.distinct(modes, options.kept);
 }
 
 void append(std::vector<Mode>& modes, const std::vector<Mode>& more) {
@@ -56,12 +55,12 @@ void append(std::vector<Mode>& modes, const std::vector<Mode>& more) {
 
 std::vector<Mode> propose(const Belief& belief, const MovedParticles& moved, const Situation& situation,
                           const Frame& frame, Ledger& ledger) {
-    const Refinement& refinement = frame.method().refinement;
+    const HypothesisOptions& options = frame.method().hypotheses;
+    const bool preselected = frame.method().preselection.tried > 0;
     const bool found_anywhere = situation.searching() && !frame.observation.segmented();
     const std::vector<Mode> particles = modes_of(moved);
-    std::vector<Mode> leaders = found_anywhere && refinement.shortlist > 0
-                                    ? preselect(particles, situation, frame, ledger)
-                                    : frame.model.distinct(particles, refinement.modes);
+    std::vector<Mode> leaders = found_anywhere && preselected ? preselect(particles, situation, frame, ledger)
+                                                              : frame.model.distinct(particles, options.modes);
     // Once a pose was verified, one hypothesis is enough for its mode: its prediction where the image agrees with it,
     // else the particle that came nearest, as where the object moves.
     const bool verified = situation.phase == Phase::kConfirming || situation.phase == Phase::kTracking;
@@ -75,10 +74,10 @@ std::vector<Mode> propose(const Belief& belief, const MovedParticles& moved, con
     if (leads) leaders.erase(leaders.begin());
     if (belief.pose_before_loss) modes.push_back({*belief.pose_before_loss, 1.0, 0.0});
     append(modes, leaders);
-    if (refinement.shortlist == 0)
+    if (!preselected)
         for (const Pose& pose : situation.best_from_pairs) modes.push_back({pose, 1.0, 0.0});
     // A search everywhere tries those of the mode that it has chosen, see disambiguate.
-    if (refinement.rivals > 0 && alternatives_due(belief.lock, refinement, frame.step) && !found_anywhere) {
+    if (options.alternatives > 0 && alternatives_due(belief.lock, frame.method(), frame.step) && !found_anywhere) {
         const std::vector<Mode> alternatives = best_alternatives(modes, situation, frame, ledger);
         if (!modes.empty()) append(modes, near_symmetric_modes(modes.front(), frame.model.symmetries));
         append(modes, alternatives);
@@ -89,7 +88,7 @@ std::vector<Mode> propose(const Belief& belief, const MovedParticles& moved, con
 
 std::vector<Mode> near_symmetric_modes(const Mode& mode, const Symmetries& symmetries) {
     std::vector<Mode> modes;
-    for (const Pose& turn : symmetries.near) {
+    for (const Pose& turn : symmetries.near_symmetries) {
         modes.push_back(mode);
         modes.back().camera_from_object = mode.camera_from_object * turn;
     }
@@ -98,28 +97,27 @@ std::vector<Mode> near_symmetric_modes(const Mode& mode, const Symmetries& symme
 
 std::vector<Mode> best_alternatives(const std::vector<Mode>& leaders, const Situation& situation, const Frame& frame,
                                     Ledger& ledger) {
-    constexpr std::size_t kLeaders = 2;
     const Stopwatch watch;
-    const Refinement& refinement = situation.plan.refinement;
-    const int wanted = ledger.affordable(Stage::kRivals, refinement.rivals, 0);
+    const HypothesisOptions& options = frame.method().hypotheses;
+    const int wanted = ledger.affordable(Stage::kAlternatives, situation.plan.alternatives, 0);
     if (wanted == 0) return {};
-    const std::size_t used = std::min(leaders.size(), kLeaders);
+    const std::size_t used = std::min(leaders.size(), static_cast<std::size_t>(options.leaders));
     std::vector<Pose> proposals;
     for (std::size_t k = 0; k < used; ++k) {
         const std::vector<Pose> of_leader =
-            rivals_of(leaders[k].camera_from_object, frame.model.extent(), wanted / static_cast<int>(used),
-                      frame.options.seed + k, frame.step);
+            alternatives_of(leaders[k].camera_from_object, frame.model.extent(), wanted / static_cast<int>(used),
+                            frame.options.seed + k, frame.step);
         proposals.insert(proposals.end(), of_leader.begin(), of_leader.end());
     }
-    GradientStep step = frame.method().start_step;
+    GradientStep step = frame.method().search.step;
     step.max_rays = std::min(step.max_rays, situation.plan.step.max_rays);
     const std::vector<MovedParticle> moved =
-        move_poses(proposals, step, RandomPurpose::kRivals, situation.window, frame, ledger);
-    ledger.effort.rivals = static_cast<int>(moved.size());
-    ledger.budget.took(Stage::kRivals, ledger.effort.rivals, watch.elapsed_s());
+        move_poses(proposals, step, RandomPurpose::kAlternatives, situation.window, frame, ledger);
+    ledger.effort.alternatives = static_cast<int>(moved.size());
+    ledger.budget.took(Stage::kAlternatives, ledger.effort.alternatives, watch.elapsed_s());
     std::vector<Mode> modes;
     for (const MovedParticle& pose : moved) modes.push_back({pose.camera_from_object, pose.cost, pose.support});
-    return frame.model.distinct(modes, refinement.rival_modes);
+    return frame.model.distinct(modes, options.alternatives_refined);
 }
 
 void bring_to_one_representative(std::vector<Mode>& modes, const ObjectModel& model) {

@@ -15,7 +15,7 @@ ObservedGrid observe_weighted(const PixelGrid& grid, const Window& window, const
     if (!window.surfels || observation.segmented()) return observed;
     for (int index = 0; index < grid.size(); ++index) {
         const int pixel = grid.image_v(index) * observation.camera().width + grid.image_u(index);
-        const Patch* surfel = window.surfels->at(observation.camera(), pixel);
+        const Surfel* surfel = window.surfels->at(observation.camera(), pixel);
         observed.weights.push_back(surfel == nullptr ? 1.0F : static_cast<float>(surfel->weight));
     }
     return observed;
@@ -70,7 +70,7 @@ MovedParticles move_particles(const ParticleSet& predicted, const Situation& sit
         result.costs.push_back(moved[i].cost);
     }
     update_weights(result.particles, negative_log_likelihoods);
-    result.effective_sample_size = effective_sample_size(result.particles.weights);
+    result.effective_sample_size = effective_sample_size(result.particles.negative_log_weights);
     ledger.effort.particles = predicted.size();
     ledger.seconds.particles = watch.elapsed_s();
     ledger.budget.took(Stage::kParticles, predicted.size(), ledger.seconds.particles);

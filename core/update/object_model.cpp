@@ -6,15 +6,15 @@
 namespace nearpose {
 
 ObjectModel make_object_model(std::shared_ptr<const ViewGenerator> views, const EstimatorOptions& options) {
-    constexpr double kRotation_rad = 0.15;
-    constexpr double kTranslationDiameters = 0.03;
     if (!views) throw std::invalid_argument("PoseEstimator: a view generator is needed");
     ObjectModel model;
     model.views = std::move(views);
-    if (options.method.start == Start::kSurface) model.surface_points = find_anchors(*model.views);
-    if (options.method.start == Start::kPairs) model.point_pairs.emplace(*model.views);
+    if (options.method.search.initialisation == Initialisation::kSurface)
+        model.surface_points = sample_surface(*model.views);
+    if (options.method.search.initialisation == Initialisation::kPairs) model.point_pairs.emplace(*model.views);
     model.symmetries = options.symmetries;
-    model.mode_distance = {kRotation_rad, kTranslationDiameters * model.diameter_m()};
+    model.mode_distance = {options.method.hypotheses.mode_rotation_rad,
+                           options.method.hypotheses.mode_translation_diameters * model.diameter_m()};
     return model;
 }
 

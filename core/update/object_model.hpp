@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "core/shape/modes.hpp"
 #include "core/options.hpp"
 #include "core/search/pair_hypotheses.hpp"
+#include "core/shape/modes.hpp"
 #include "core/view_generator.hpp"
 
 namespace nearpose {
@@ -15,8 +15,8 @@ namespace nearpose {
 // Made once, with all slow set-up, and never changed; several estimators may share one.
 struct ObjectModel {
     std::shared_ptr<const ViewGenerator> views;
-    std::vector<SurfaceAnchor> surface_points;  // of a search that lays single points on the image
-    std::optional<AnchorPairs> point_pairs;     // of a search by pairs of points
+    std::vector<OrientedPoint> surface_points;  // of a search that lays single points on the image
+    std::optional<PointPairTable> point_pairs;  // of a search by pairs of points
     Symmetries symmetries;
     ModeDistance mode_distance;  // poses closer than that are one mode
 

@@ -19,31 +19,31 @@ const char* to_string(Phase phase) {
     return "";
 }
 
-bool search_due(const Lock& lock, const Refinement& refinement) {
-    constexpr int kAtFirst = 4, kPeriod = 16;  // frames
-    const int period = refinement.frames_to_search;
-    if (refinement.modes == 0 || period == 0) return false;
-    if (lock.frames_contradicted > 0) return lock.frames_contradicted % period == 0;
-    return lock.agrees_too_little && (lock.frames_unverified <= kAtFirst || lock.frames_unverified % kPeriod == 0);
+bool search_due(const Lock& lock, const Method& method) {
+    const RelocalisationOptions& options = method.relocalisation;
+    if (method.hypotheses.modes == 0 || options.frames_contradicted == 0) return false;
+    if (lock.frames_contradicted > 0) return lock.frames_contradicted % options.frames_contradicted == 0;
+    return lock.agrees_too_little && (lock.frames_unverified <= options.unverified_at_first ||
+                                      lock.frames_unverified % options.unverified_period == 0);
 }
 
-bool confirmed(const Lock& lock, const Refinement& refinement) {
-    return lock.frames_unreplaced >= refinement.frames_to_hold && lock.alternatives_weight < kMostRivalWeight &&
-           lock.frames_contradicted == 0;
+bool confirmed(const Lock& lock, const Method& method) {
+    return lock.frames_unreplaced >= method.effort.frames_to_confirm &&
+           lock.alternatives_weight < method.verification.max_alternatives_weight && lock.frames_contradicted == 0;
 }
 
-bool alternatives_due(const Lock& lock, const Refinement& refinement, std::uint64_t step) {
-    return !confirmed(lock, refinement) || step % static_cast<std::uint64_t>(refinement.rival_period) == 0;
+bool alternatives_due(const Lock& lock, const Method& method, std::uint64_t step) {
+    return !confirmed(lock, method) || step % static_cast<std::uint64_t>(method.hypotheses.alternatives_period) == 0;
 }
 
 Phase phase_of(const Lock& lock, const Method& method, bool has_particles) {
-    if (!has_particles || search_due(lock, method.refinement)) return Phase::kSearching;
-    if (!method.economy.on) return Phase::kAcquiring;
-    if (confirmed(lock, method.refinement)) return Phase::kTracking;
+    if (!has_particles || search_due(lock, method)) return Phase::kSearching;
+    if (!method.effort.on) return Phase::kAcquiring;
+    if (confirmed(lock, method)) return Phase::kTracking;
     // With a third of the rays the alternatives are told apart by a third of the evidence.
     const double rays_before = plan_of(lock.phase, method, false).refinement.max_rays;
-    const double share = std::min(1.0, method.economy.confirming_rays / rays_before);
-    const bool told_apart = std::pow(lock.alternatives_weight, share) <= kMostRivalWeight;
+    const double share = std::min(1.0, method.effort.confirming.mode_rays / rays_before);
+    const bool told_apart = std::pow(lock.alternatives_weight, share) <= method.verification.max_alternatives_weight;
     return lock.verified && told_apart ? Phase::kConfirming : Phase::kAcquiring;
 }
 
@@ -52,26 +52,20 @@ Phase phase_after_prediction(Phase phase, bool image_agrees) {
 }
 
 Plan plan_of(Phase phase, const Method& method, bool predicted) {
-    const Economy& economy = method.economy;
-    Plan plan{method.step, method.refinement};
-    if (phase == Phase::kConfirming || phase == Phase::kTracking)
-        plan.step.max_rays = std::min(plan.step.max_rays, economy.step_rays);
-    if (predicted) plan.step.rounds = std::min(plan.step.rounds, economy.step_rounds);
-    if (phase == Phase::kConfirming) {
-        plan.refinement.max_rays = std::min(plan.refinement.max_rays, economy.confirming_rays);
-        plan.refinement.rounds = std::min(plan.refinement.rounds, economy.confirming_rounds);
+    Plan plan{method.step, method.refinement, method.hypotheses.alternatives};
+    if (phase == Phase::kConfirming || phase == Phase::kTracking) {
+        const PhaseEffort& effort = phase == Phase::kTracking ? method.effort.tracking : method.effort.confirming;
+        plan.step.max_rays = std::min(plan.step.max_rays, effort.particle_rays);
+        plan.refinement.max_rays = std::min(plan.refinement.max_rays, effort.mode_rays);
+        plan.refinement.rounds = std::min(plan.refinement.rounds, effort.mode_rounds);
+        plan.alternatives = std::min(plan.alternatives, effort.alternatives);
     }
-    if (phase == Phase::kTracking) {
-        plan.refinement.max_rays = std::min(plan.refinement.max_rays, economy.rays);
-        plan.refinement.rounds = std::min(plan.refinement.rounds, economy.rounds);
-        plan.refinement.rivals = std::min(plan.refinement.rivals, economy.rivals);
-    }
+    if (predicted) plan.step.rounds = std::min(plan.step.rounds, method.effort.predicted_rounds);
     return plan;
 }
 
-Lock after_prediction(Lock lock, bool motion_measured) {
-    constexpr double kKept = 0.7;  // a frame
-    lock.accepted_evidence *= motion_measured ? kKept : 0.0;
+Lock after_prediction(Lock lock, bool motion_measured, const ChoiceOptions& options) {
+    lock.accepted_evidence *= motion_measured ? options.accepted_evidence_kept : 0.0;
     return lock;
 }
 
@@ -85,15 +79,15 @@ Lock after_choice(Lock lock, bool replaced, const std::optional<double>& alterna
     return lock;
 }
 
-Lock after_assessment(Lock lock, const Assessment& assessment, const Refinement& refinement) {
-    constexpr double kContradicted = 0.8;
+Lock after_assessment(Lock lock, const Assessment& assessment, const Method& method) {
+    const VerificationOptions& limits = method.verification;
     const bool accepted = assessment.verdict == Verdict::kAccept;
     lock.verified = assessment.verified;
-    lock.frames_contradicted = assessment.agreement < kContradicted ? lock.frames_contradicted + 1 : 0;
+    lock.frames_contradicted = assessment.agreement < limits.contradicted_below ? lock.frames_contradicted + 1 : 0;
     if (accepted) lock.frames_unverified = 0;
-    lock.agrees_too_little = refinement.doubts && assessment.agreement < kConvincingAgreement;
+    lock.agrees_too_little = method.relocalisation.unverified && assessment.agreement < limits.min_agreement;
     lock.frames_unverified += lock.agrees_too_little;
-    if (accepted && refinement.confidence)
+    if (accepted && method.choice.accepted_evidence)
         lock.accepted_evidence = std::max(lock.accepted_evidence, assessment.evidence);
     return lock;
 }

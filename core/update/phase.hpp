@@ -13,8 +13,8 @@
 // Every frame decides anew from the record of the frames before: no phase is left by force.
 #pragma once
 
-#include "core/method.hpp"
 #include "core/evidence/verdict.hpp"
+#include "core/method.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -47,13 +47,13 @@ struct Lock {
 
 // Whether the object is to be searched for anew although there is a pose: where the image contradicts the pose, and,
 // at first and then now and then, where it agrees too little. A model that is not quite the part never agrees enough.
-bool search_due(const Lock& lock, const Refinement& refinement);
+bool search_due(const Lock& lock, const Method& method);
 
 // A confirmed track: not replaced for a while, told from its alternatives by the image, and not contradicted.
-bool confirmed(const Lock& lock, const Refinement& refinement);
+bool confirmed(const Lock& lock, const Method& method);
 
 // Alternatives are tried in every frame until the track is confirmed, and then in every so many.
-bool alternatives_due(const Lock& lock, const Refinement& refinement, std::uint64_t step);
+bool alternatives_due(const Lock& lock, const Method& method, std::uint64_t step);
 
 // The phase of a frame that begins. `has_particles`: something is known of the pose.
 Phase phase_of(const Lock& lock, const Method& method, bool has_particles);
@@ -64,14 +64,15 @@ Phase phase_after_prediction(Phase phase, bool image_agrees);
 
 // What a frame of a phase is worth. `predicted`: the image agrees with the predicted pose.
 struct Plan {
-    GradientStep step;      // of a particle
-    Refinement refinement;  // of a mode
+    GradientStep step;             // of a particle
+    RefinementOptions refinement;  // of a mode
+    int alternatives = 0;          // tried where they are due
 };
 Plan plan_of(Phase phase, const Method& method, bool predicted);
 
 // The frame's effect on the record, in this order.
 //   prediction: evidence fades, since what was accepted may have been moved; all of it where no motion was measured
-Lock after_prediction(Lock lock, bool motion_measured);
+Lock after_prediction(Lock lock, bool motion_measured, const ChoiceOptions& options);
 //   choice of a mode: `alternatives_weight` only where all alternatives were tried
 Lock after_choice(Lock lock, bool replaced, const std::optional<double>& alternatives_weight);
 //   assessment; `agreement` is 0 where nothing is seen, `evidence` that of an accepted pose
@@ -81,6 +82,6 @@ struct Assessment {
     double agreement = 0.0;
     double evidence = 0.0;
 };
-Lock after_assessment(Lock lock, const Assessment& assessment, const Refinement& refinement);
+Lock after_assessment(Lock lock, const Assessment& assessment, const Method& method);
 
 }  // namespace nearpose

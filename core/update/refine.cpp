@@ -11,7 +11,7 @@ Mode mode_of(const MovedParticle& refined) {
 
 std::vector<Mode> refine(const std::vector<Mode>& modes, const Situation& situation, const Frame& frame,
                          Ledger& ledger) {
-    const Refinement& refinement = situation.plan.refinement;
+    const RefinementOptions& refinement = situation.plan.refinement;
     const PixelGrid grid = ray_grid(frame, situation.window.around, refinement.max_rays);
     const StepContext context = frame.context(ledger.measured(grid, frame.observation), frame.method().step);
     const Stopwatch watch;
@@ -35,7 +35,7 @@ std::vector<Mode> refine(const std::vector<Mode>& modes, const Situation& situat
 
 MovedParticle evaluate_prediction(const Pose& predicted, const Situation& situation, const Frame& frame,
                                   Ledger& ledger) {
-    Refinement unmoved = situation.plan.refinement;
+    RefinementOptions unmoved = situation.plan.refinement;
     unmoved.rounds = 0;
     const PixelGrid grid = ray_grid(frame, situation.window.around, unmoved.max_rays);
     const StepContext context = frame.context(ledger.measured(grid, frame.observation), frame.method().step);
@@ -47,7 +47,7 @@ void gate_prediction(Situation& situation, const Belief& predicted, const Frame&
     if (!verified || !(predicted.lock.accepted_evidence > 0.0)) return;
     const MovedParticle prediction =
         evaluate_prediction(predicted.tracked->camera_from_object, situation, frame, ledger);
-    const bool agrees = prediction.agreement >= kConvincingAgreement;
+    const bool agrees = prediction.agreement >= frame.method().verification.min_agreement;
     if (agrees) situation.prediction = prediction;
     situation.phase = phase_after_prediction(situation.phase, agrees);
     situation.plan = plan_of(situation.phase, frame.method(), agrees);

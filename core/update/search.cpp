@@ -14,17 +14,16 @@ namespace {
 // Hypotheses from pairs of oriented points: `count` candidates, a share of which these are. None without a table of
 // pairs.
 ParticleSet sample_on_pairs(Situation& situation, int count, int draws, const Frame& frame) {
-    constexpr int kDrawsUnsegmented = 6;  // times as many: most draws miss the object
-    constexpr int kRefined = 8;
     ParticleSet particles;
     if (!situation.window.surfels) return particles;
-    const int preselected = frame.method().refinement.shortlist;
-    const int kept = preselected > 0 ? preselected : kRefined;
+    const PreselectionOptions& preselection = frame.method().preselection;
+    const int kept = preselection.tried > 0 ? preselection.tried : preselection.kept;
     const bool segmented = frame.observation.segmented();
-    const PairStartOptions options{(segmented ? 1 : kDrawsUnsegmented) * draws, segmented ? count / 2 : 2 * count / 3,
-                                   static_cast<std::uint64_t>(count), frame.options.num_threads};
-    particles.poses = start_on_pairs(frame.observation, *frame.model.point_pairs, *situation.window.surfels, options,
-                                     frame.options.seed, frame.step);
+    const PairSearchOptions options{(segmented ? 1 : frame.method().search.draws_factor_unsegmented) * draws,
+                                    segmented ? count / 2 : 2 * count / 3, static_cast<std::uint64_t>(count),
+                                    frame.options.num_threads};
+    particles.poses = hypotheses_from_pairs(frame.observation, *frame.model.point_pairs, *situation.window.surfels,
+                                            options, frame.options.seed, frame.step);
     const auto first = particles.poses.begin();
     if (!segmented) situation.best_from_pairs.assign(first, first + std::min(kept, particles.size()));
     return particles;
@@ -39,17 +38,17 @@ ParticleSet sample_where_surfaces_meet(Situation& situation, int count, int draw
     ParticleSet particles = sample_on_pairs(situation, count, draws, frame);
     const int left = count - particles.size();
     const int on_sphere = observation.segmented() ? left / 2 : 0;
-    ParticleSet centred = start_on_sphere(observation, frame.model.extent(), on_sphere, options.seed, frame.step);
-    const PixelGrid grid = ray_grid(frame, std::nullopt, frame.method().start_step.max_rays);
+    ParticleSet centred = sample_on_sphere(observation, frame.model.extent(), on_sphere, options.seed, frame.step);
+    const PixelGrid grid = ray_grid(frame, std::nullopt, frame.method().search.step.max_rays);
     const PinholeCamera coarse = camera_of(grid, observation.camera());
     parallel_for(on_sphere, options.num_threads, [&](int i) {
         for (int round = 0; round < 2; ++round)  // the first shift changes what is seen
             centred.poses[i] = shift_to_seen_surface(centred.poses[i], observation, *frame.model.views, coarse);
     });
-    const std::vector<SurfaceAnchor>& surface =
-        frame.model.point_pairs ? frame.model.point_pairs->anchors() : frame.model.surface_points;
+    const std::vector<OrientedPoint>& surface =
+        frame.model.point_pairs ? frame.model.point_pairs->points() : frame.model.surface_points;
     const ParticleSet on_surface =
-        start_on_surface(observation, surface, left - on_sphere, options.seed, frame.step, on_sphere);
+        sample_on_surface(observation, surface, left - on_sphere, options.seed, frame.step, on_sphere);
     particles.poses.insert(particles.poses.end(), centred.poses.begin(), centred.poses.end());
     particles.poses.insert(particles.poses.end(), on_surface.poses.begin(), on_surface.poses.end());
     return particles;
@@ -59,7 +58,7 @@ ParticleSet sample_where_surfaces_meet(Situation& situation, int count, int draw
 std::vector<Pose> best_candidates(const std::vector<Pose>& candidates, const Window& window, const Frame& frame,
                                   Ledger& ledger) {
     const std::vector<MovedParticle> moved =
-        move_poses(candidates, frame.method().start_step, RandomPurpose::kStart, window, frame, ledger);
+        move_poses(candidates, frame.method().search.step, RandomPurpose::kStart, window, frame, ledger);
     std::vector<int> order(moved.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(),
@@ -74,24 +73,24 @@ std::vector<Pose> best_candidates(const std::vector<Pose>& candidates, const Win
 }  // namespace
 
 ParticleSet search(Situation& situation, const Frame& frame, Ledger& ledger) {
-    constexpr int kLeast = 20;
-    const Method& method = frame.method();
+    const SearchOptions& method = frame.method().search;
     const EstimatorOptions& options = frame.options;
     if (frame.model.point_pairs) {
-        situation.window.surfels = std::make_shared<const PatchGrid>(
-            patches_of(frame.observation, *frame.model.point_pairs, options.seed, frame.step));
+        situation.window.surfels = std::make_shared<const SurfelGrid>(
+            surfels_of(frame.observation, *frame.model.point_pairs, options.seed, frame.step));
     }
     const Stopwatch watch;
-    const int wanted = std::max(method.start_candidates, options.num_particles);
-    const int count = ledger.affordable(Stage::kSearch, wanted, kLeast);  // the next search tries others
-    const auto draws = static_cast<int>(static_cast<double>(method.start_draws) * count / wanted);
+    const int wanted = std::max(method.candidates, options.num_particles);
+    const int count =
+        ledger.affordable(Stage::kSearch, wanted, method.least_candidates);  // the next search tries others
+    const auto draws = static_cast<int>(static_cast<double>(method.draws) * count / wanted);
     ParticleSet particles;
-    if (method.start != Start::kSphere) particles = sample_where_surfaces_meet(situation, count, draws, frame);
+    if (method.initialisation != Initialisation::kSphere)
+        particles = sample_where_surfaces_meet(situation, count, draws, frame);
     if (particles.size() == 0)
-        particles = start_on_sphere(frame.observation, frame.model.extent(), count, options.seed, frame.step);
-    if (method.start_candidates > 0)
-        particles.poses = best_candidates(particles.poses, situation.window, frame, ledger);
-    particles.weights.assign(particles.poses.size(), 0.0);
+        particles = sample_on_sphere(frame.observation, frame.model.extent(), count, options.seed, frame.step);
+    if (method.candidates > 0) particles.poses = best_candidates(particles.poses, situation.window, frame, ledger);
+    particles.negative_log_weights.assign(particles.poses.size(), 0.0);
     ledger.effort.starts = count;
     ledger.seconds.start = watch.elapsed_s();
     ledger.budget.took(Stage::kSearch, count, ledger.seconds.start);

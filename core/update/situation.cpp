@@ -13,7 +13,7 @@ Situation situation_of(const Belief& predicted, const Method& method) {
 
 std::optional<Pose> pose_before_loss(const Belief& predicted, Phase phase, const Method& method) {
     if (phase != Phase::kSearching)
-        return confirmed(predicted.lock, method.refinement) ? std::nullopt : predicted.pose_before_loss;
+        return confirmed(predicted.lock, method) ? std::nullopt : predicted.pose_before_loss;
     if (predicted.pose_before_loss || !predicted.tracked) return predicted.pose_before_loss;
     return predicted.tracked->camera_from_object;
 }

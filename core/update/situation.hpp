@@ -16,8 +16,8 @@ namespace nearpose {
 struct Window {
     bool everywhere = false;     // the object may be anywhere: during a search
     std::optional<Pose> around;  // else around this pose (camera_from_object), where nothing is segmented
-    // Of a search: how much each place of the image says about the pose. None: all places alike.
-    std::shared_ptr<const PatchGrid> surfels;
+    // Of a search: how much each place of the image says about the pose. None: all places matches.
+    std::shared_ptr<const SurfelGrid> surfels;
 };
 
 struct Situation {

@@ -7,12 +7,12 @@ namespace nearpose {
 
 // In the order in which an update goes through them, and what is counted in each.
 enum class Stage {
-    kSearch,     // candidates of a start
-    kParticles,  // moved
-    kShortlist,  // looked at
-    kRivals,     // tried
-    kModes,      // refined
-    kFit,        // one, with the verdict
+    kSearch,        // candidates of a start
+    kParticles,     // moved
+    kPreselection,  // looked at
+    kAlternatives,  // tried
+    kModes,         // refined
+    kFit,           // one, with the verdict
 };
 
 // Learns what a unit of each stage takes, elapsed, and leaves room for the stages that follow. It says what is likely

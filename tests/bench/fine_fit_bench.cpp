@@ -45,7 +45,7 @@ void with_context(const Measured& measured) {
 
 void ours(benchmark::State& state) {
     with_context([&](const StepContext& context) {
-        for (auto _ : state) benchmark::DoNotOptimize(fit_finely(start(), context));
+        for (auto _ : state) benchmark::DoNotOptimize(fit_jointly(start(), context));
     });
     describe(state, 1.0, "unit=fit naive=fine_fit/naive");
 }

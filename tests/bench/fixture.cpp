@@ -5,8 +5,8 @@
 
 #include "apps/scenes/parts.hpp"
 #include "apps/scenes/recording.hpp"
-#include "core/method.hpp"
 #include "core/filter/particles.hpp"
+#include "core/method.hpp"
 #include "core/search/sampling.hpp"
 
 namespace nearpose::bench {
@@ -64,8 +64,9 @@ PixelGrid grid_of(const Observation& observation, int max_rays) {
 
 std::vector<Pose> swarm_around(const Pose& camera_from_object, const ModelExtent& extent, int count) {
     const Method method = method_default();
-    const Diffusion spread{method.diffusion_rotation_rad, method.diffusion_diameters * extent.diameter_m()};
-    return start_around(camera_from_object, spread, extent, count, 1, 1).poses;
+    const Diffusion spread{method.filter.diffusion_rotation_rad,
+                           method.filter.diffusion_diameters * extent.diameter_m()};
+    return sample_around(camera_from_object, spread, extent, count, 1, 1).poses;
 }
 
 const Still& still() {

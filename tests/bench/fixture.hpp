@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "core/base/depth_image.hpp"
+#include "core/base/pose.hpp"
 #include "core/filter/gradient_step.hpp"
 #include "core/observation/observation.hpp"
-#include "core/base/pose.hpp"
 #include "optim/ceres_pose_solver.hpp"
 #include "raycast/embree_view_generator.hpp"
 #include "raycast/mesh.hpp"

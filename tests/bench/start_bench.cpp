@@ -9,7 +9,7 @@ namespace nearpose::bench {
 namespace {
 
 void sphere(benchmark::State& state) {
-    constexpr int kStarts = 1500, kMeasured = 30;  // of the starts, which are alike
+    constexpr int kStarts = 1500, kMeasured = 30;  // of the starts, which are matches
     const PinholeCamera& camera = engine_block_approach().camera;
     const Frame& first = engine_block_approach().frames.front();
     const naive::SingleRayViews views(engine_block());
@@ -18,7 +18,7 @@ void sphere(benchmark::State& state) {
     for (auto _ : state) {
         const Observation observation = make_observation(first.depth, camera, first.mask);
         const naive::CloudIndex cloud(observation.points_in_camera());
-        const ParticleSet starts = start_on_sphere(observation, extent_of(engine_block()), kMeasured, 1, 1);
+        const ParticleSet starts = sample_on_sphere(observation, extent_of(engine_block()), kMeasured, 1, 1);
         for (const Pose& pose : starts.poses) {
             const RandomStream random(1, 1, 1, RandomPurpose::kSampleConsensus);
             benchmark::DoNotOptimize(

@@ -16,8 +16,8 @@ inline PoseEstimator make_estimator(std::shared_ptr<const ViewGenerator> views, 
     EstimatorOptions options;
     options.num_particles = num_particles;
     if (count == Count::kFixed) {
-        options.method.economy.min_particles = num_particles;
-        options.method.economy.step_rounds = options.method.step.rounds;
+        options.method.effort.min_particles = num_particles;
+        options.method.effort.predicted_rounds = options.method.step.rounds;
     }
     options.num_threads = num_threads;
     return PoseEstimator(std::move(views), std::make_shared<CeresPoseSolver>(), options);

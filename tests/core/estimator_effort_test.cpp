@@ -118,7 +118,7 @@ TEST(Estimator, WhileOneModeHoldsFewParticlesDoAndAfterALossAllAreBack) {
         if (frame < 5) {
             EXPECT_EQ(result.effort.particles, 40) << frame;
         }
-        EXPECT_GE(result.effort.particles, method_default().economy.min_particles);
+        EXPECT_GE(result.effort.particles, method_default().effort.min_particles);
         EXPECT_EQ(result.effort.starts > 0, frame == 0) << frame;
         EXPECT_FALSE(result.effort.reduced_for_budget);
         fewest = std::min(fewest, result.effort.particles);
@@ -134,14 +134,14 @@ TEST(Estimator, WhileOneModeHoldsFewParticlesDoAndAfterALossAllAreBack) {
 TEST(Estimator, AnEstimateThatConvincesIsConfirmedWithFewerRaysButAllParticlesAndRivals) {
     EstimatorOptions options = small_options(method_default(), 0);
     PoseEstimator sparing(kPart, kSolver, options);
-    options.method.economy.on = false;
+    options.method.effort.on = false;
     PoseEstimator whole(kPart, kSolver, options);
     for (int frame = 0; frame < 5; ++frame) {
         const std::optional<Pose> motion = frame > 0 ? std::optional(motion_to(frame)) : std::nullopt;
         const UpdateResult less = sparing.update(observe_at(frame), motion);
         const UpdateResult all = whole.update(observe_at(frame), motion);
         EXPECT_EQ(less.effort.particles, 40) << frame;
-        EXPECT_EQ(less.effort.rivals, options.method.refinement.rivals) << frame;
+        EXPECT_EQ(less.effort.alternatives, options.method.hypotheses.alternatives) << frame;
         EXPECT_LT(error_m(less, frame), 0.001) << frame;
         if (frame == 0) {
             EXPECT_EQ(less.counts.view_points, all.counts.view_points);
@@ -179,7 +179,7 @@ TEST(Estimator, WhatDoesNotConvinceIsDoubtedAtFirstAndNowAndThen) {
     const Observation observation = make_observation(image, kCamera, mask);
     for (const bool doubts : {true, false}) {
         EstimatorOptions options = small_options(method_default(), 0);
-        options.method.refinement.doubts = doubts;
+        options.method.relocalisation.unverified = doubts;
         PoseEstimator estimator(kPart, kSolver, options);
         std::vector<int> searched;
         for (int frame = 0; frame < 34; ++frame) {
@@ -294,7 +294,7 @@ TEST(Estimator, AJoltThatNobodyMeasuredIsFollowedInTheFrameItself) {
 
 TEST(Estimator, AFixedNumberOfParticlesStays) {
     EstimatorOptions options = small_options(method_default(), 0);
-    options.method.economy.min_particles = options.num_particles;
+    options.method.effort.min_particles = options.num_particles;
     PoseEstimator estimator(kPart, kSolver, options);
     for (int frame = 0; frame < 8; ++frame)
         EXPECT_EQ(estimator.update(observe_at(frame), {}).effort.particles, options.num_particles) << frame;

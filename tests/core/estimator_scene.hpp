@@ -47,7 +47,7 @@ inline Observation observe_nothing() {
 inline EstimatorOptions small_options(Method method, int threads) {
     EstimatorOptions options;
     options.method = std::move(method);
-    options.method.start_candidates = std::min(options.method.start_candidates, 300);
+    options.method.search.candidates = std::min(options.method.search.candidates, 300);
     options.num_particles = 40;
     options.num_threads = threads;
     options.tolerance = {0.01, 0.1};  // 160 x 120 pixels of a small part: its depth is known to the sensor's scale

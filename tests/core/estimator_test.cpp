@@ -175,7 +175,8 @@ TEST(Estimator, TellsANearlySymmetricPartApartOnlyWhereItsDetailIsInView) {
     const auto plate = std::make_shared<test::BoxViewGenerator>(
         std::vector<test::Box>{{{-0.10, -0.07, -0.03}, {0.10, 0.07, 0.03}}, {{0.04, 0.02, 0.03}, {0.08, 0.06, 0.06}}});
     EstimatorOptions options = small_options(method_default(), 0);
-    options.symmetries.near = {{Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ())), {0, 0, 0}}};
+    options.symmetries.near_symmetries = {
+        {Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ())), {0, 0, 0}}};
     for (const bool from_above : {true, false}) {
         // Seen askew, so that faces across all axes are in view.
         const Eigen::Vector3d tilt = 0.4 * Eigen::Vector3d(1.0, 0.7, 0.0).normalized();

@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "core/filter/association.hpp"
 #include "core/base/pose.hpp"
+#include "core/filter/association.hpp"
 
 namespace nearpose::testing_shapes {
 

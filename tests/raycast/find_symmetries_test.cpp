@@ -95,7 +95,7 @@ TEST(FindSymmetries, CubeHas24TurnsABoxFour) {
     const Symmetries cube = find(test::make_box({0.02F, 0.02F, 0.02F}));
     EXPECT_EQ(cube.discrete.size(), 23U);
     EXPECT_TRUE(cube.continuous.empty());
-    EXPECT_TRUE(cube.near.empty());
+    EXPECT_TRUE(cube.near_symmetries.empty());
     const Symmetries box = find(test::make_box({0.02F, 0.03F, 0.05F}));
     EXPECT_EQ(box.discrete.size(), 3U);
     EXPECT_TRUE(box.continuous.empty());
@@ -134,7 +134,7 @@ TEST(FindSymmetries, CylinderAndConeTurnFreelyAndOnlyTheCylinderMayBeFlipped) {
     const Symmetries cone = find(make_frustum({180, 0.05, 0.01}));
     EXPECT_EQ(cone.continuous.size(), 1U);
     EXPECT_TRUE(cone.discrete.empty());
-    EXPECT_TRUE(cone.near.empty());
+    EXPECT_TRUE(cone.near_symmetries.empty());
 }
 
 TEST(FindSymmetries, BallTurnsAboutEveryAxis) {
@@ -151,12 +151,12 @@ TEST(FindSymmetries, OneSmallHoleBreaksThemAndWhatIsLeftIsNear) {
     odd.odd_hole = 0.0;  // sides of 12 mm where the part is 10 cm wide
     const Symmetries found = find(make_frustum(odd));
     EXPECT_TRUE(found.empty());
-    EXPECT_EQ(found.near.size(), 5U);
+    EXPECT_EQ(found.near_symmetries.size(), 5U);
     odd.hole = 0.0;
     odd.odd_hole = 0.15;  // a single one, of 6 mm, 3.5 mm wide inside
     const Symmetries alone = find(make_frustum(odd));
     EXPECT_TRUE(alone.empty());
-    EXPECT_EQ(alone.near.size(), 5U);
+    EXPECT_EQ(alone.near_symmetries.size(), 5U);
 }
 
 TEST(FindSymmetries, DetailsBelowTheResolutionDoNotCount) {
@@ -180,7 +180,7 @@ TEST(FindSymmetries, DiscWithAKeywayLooksNearlyTheSameAfterAnyTurn) {
                      key.vertices_in_object[key.triangles[i][2]].cast<double>());
     const Symmetries shaft = find(keyed);
     EXPECT_TRUE(shaft.empty());
-    EXPECT_EQ(shaft.near.size(), 11U);
+    EXPECT_EQ(shaft.near_symmetries.size(), 11U);
 }
 
 TEST(FindSymmetries, MoveWithThePart) {
@@ -188,11 +188,11 @@ TEST(FindSymmetries, MoveWithThePart) {
         const Mesh mesh = make_frustum(frustum);
         const Symmetries here = find(mesh), there = find(moved(mesh, kElsewhere));
         ASSERT_EQ(here.discrete.size(), there.discrete.size());
-        ASSERT_EQ(here.near.size(), there.near.size());
+        ASSERT_EQ(here.near_symmetries.size(), there.near_symmetries.size());
         for (const Pose& turn : here.discrete)
             EXPECT_LT(distance_m(there.discrete, kElsewhere * turn * kElsewhere.inverse()), 2.0 * kResolution_m);
-        for (const Pose& turn : here.near)
-            EXPECT_LT(distance_m(there.near, kElsewhere * turn * kElsewhere.inverse()), 4.0 * kResolution_m);
+        for (const Pose& turn : here.near_symmetries)
+            EXPECT_LT(distance_m(there.near_symmetries, kElsewhere * turn * kElsewhere.inverse()), 4.0 * kResolution_m);
     }
     const Symmetries cylinder = find(moved(make_frustum({180}), kElsewhere));
     ASSERT_EQ(cylinder.continuous.size(), 1U);

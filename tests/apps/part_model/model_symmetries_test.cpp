@@ -50,7 +50,7 @@ TEST(ModelSymmetries, TheBuiltInPartsHaveNoneButTheFlangeNearly) {
     for (const std::string& name : simulate::part_names()) {
         const Symmetries found = find_symmetries(simulate::embedded_part(name).mesh);
         EXPECT_TRUE(found.empty()) << name;
-        EXPECT_EQ(found.near.size(), name == "flange" ? 5U : 0U) << name;
+        EXPECT_EQ(found.near_symmetries.size(), name == "flange" ? 5U : 0U) << name;
     }
 }
 

@@ -56,13 +56,13 @@ Registered register_pose(const Pose& camera_from_object, const SingleRayViews& v
 Pipeline::Pipeline(const Mesh& mesh, const PinholeCamera& camera, const Pose& start, int num_particles)
     : views_(mesh), extent_(extent_of(mesh)), camera_(camera) {
     particles_.poses.assign(static_cast<std::size_t>(num_particles), start);
-    particles_.weights.assign(static_cast<std::size_t>(num_particles), 0.0);
+    particles_.negative_log_weights.assign(static_cast<std::size_t>(num_particles), 0.0);
 }
 
 Pose Pipeline::update(const DepthImage& depth, const Mask& mask, const Pose& now_from_before) {
     ++step_;
     const CloudIndex cloud(thinned(back_project(depth, mask, camera_), kMaxCloudPoints));
-    if (effective_sample_size(particles_.weights) < 0.5 * particles_.size())
+    if (effective_sample_size(particles_.negative_log_weights) < 0.5 * particles_.size())
         particles_ = systematic_resample(particles_, particles_.size(), kSeed, step_);
     propagate(particles_, now_from_before);
     diffuse(particles_, {kDiffusion_rad, kDiffusionDiameters * extent_.diameter_m()}, extent_.centre_in_object(), kSeed,
@@ -79,7 +79,7 @@ Pose Pipeline::update(const DepthImage& depth, const Mask& mask, const Pose& now
         likelihoods.push_back(moved.epsilon_m2 / (2.0 * variance_m2));
     }
     update_weights(particles_, likelihoods);
-    return particles_.poses[static_cast<std::size_t>(map_index(particles_.weights))];
+    return particles_.poses[static_cast<std::size_t>(map_index(particles_.negative_log_weights))];
 }
 
 }  // namespace nearpose::bench::naive

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "core/base/depth_image.hpp"
-#include "core/filter/particles.hpp"
 #include "core/base/random.hpp"
+#include "core/filter/particles.hpp"
 #include "tests/bench/naive/cloud.hpp"
 #include "tests/bench/naive/least_squares.hpp"
 #include "tests/bench/naive/single_ray_views.hpp"

@@ -69,7 +69,7 @@ TEST(Random, RotationsAreUniform) {
 }
 
 TEST(Random, BelowStaysInRangeAndReachesAll) {
-    RandomStream random(3, 0, 0, RandomPurpose::kRivals);
+    RandomStream random(3, 0, 0, RandomPurpose::kAlternatives);
     std::set<int> seen;
     for (int k = 0; k < 1000; ++k) seen.insert(random.below(7));
     EXPECT_EQ(seen, (std::set<int>{0, 1, 2, 3, 4, 5, 6}));

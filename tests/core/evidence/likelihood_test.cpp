@@ -56,7 +56,7 @@ TEST(PixelCost, IsZeroAtTheTruthAndCountsEveryPixel) {
     const PixelCost cost = cost_at(kTruth, observe_part(true));
     EXPECT_LT(cost.cost, 1e-4);
     EXPECT_EQ(cost.agreeing, cost.judged);
-    EXPECT_EQ(cost.missing_model + cost.model_in_front + cost.model_behind, 0);
+    EXPECT_EQ(cost.missing_model + cost.free_space_violations + cost.occluded, 0);
 }
 
 TEST(PixelCost, ASmallErrorInDepthCostsItsSquare) {
@@ -73,7 +73,7 @@ TEST(PixelCost, ASmallErrorInDepthCostsItsSquare) {
 TEST(PixelCost, ModelOverSeenBackgroundAndMissingModelCostFully) {
     const Observation observation = observe_part(true);
     const PixelCost cost = cost_at(shifted(0.3, 0, 0), observation);  // beside the object
-    EXPECT_GT(cost.model_in_front, 50);
+    EXPECT_GT(cost.free_space_violations, 50);
     EXPECT_GT(cost.missing_model, 50);
     EXPECT_NEAR(cost.cost, 1.0, 1e-9);
 }
@@ -82,8 +82,8 @@ TEST(PixelCost, ModelBehindTheBackgroundMayBeHidden) {
     const Observation observation = observe_part(true);
     const Pose behind_wall = shifted(0.5, 0, 1.0);
     const PixelCost cost = cost_at(behind_wall, observation);
-    EXPECT_GT(cost.model_behind, 15);
-    const double hidden = 0.3 * cost.model_behind, missing = cost.missing_model;
+    EXPECT_GT(cost.occluded, 15);
+    const double hidden = 0.3 * cost.occluded, missing = cost.missing_model;
     EXPECT_NEAR(cost.cost, (hidden + missing) / cost.judged, 1e-9);
 }
 
@@ -125,14 +125,14 @@ TEST(PixelCost, WithoutAMaskModelDeepBeforeWhatIsMeasuredCostsMore) {
     const Pose beside = shifted(0.2, 0, 0);  // before the wall, which is 0.35 to 0.44 m behind
     PixelCostOptions options;
     const PixelCost shallow = cost_at(beside, open, options);
-    ASSERT_GT(shallow.model_in_front, 100);
-    const auto more_than_shallow = [&](double deep_m) {
-        options.deep_m = deep_m;
+    ASSERT_GT(shallow.free_space_violations, 100);
+    const auto more_than_shallow = [&](double free_space_depth_m) {
+        options.free_space_depth_m = free_space_depth_m;
         const PixelCost cost = cost_at(beside, open, options);
-        EXPECT_EQ(cost.model_in_front, shallow.model_in_front);
+        EXPECT_EQ(cost.free_space_violations, shallow.free_space_violations);
         return cost.cost * cost.judged - shallow.cost * shallow.judged;
     };
-    const double all = (options.deep_cost - 1.0) * shallow.model_in_front;
+    const double all = (options.free_space_cost - 1.0) * shallow.free_space_violations;
     EXPECT_NEAR(more_than_shallow(0.45), 0.0, 1e-9) << "none is so deep";
     EXPECT_NEAR(more_than_shallow(0.05), all, 0.02 * all) << "nearly all are twice as deep";
     const double some = more_than_shallow(0.25);  // by 0.4 to 0.76 of it
@@ -159,7 +159,7 @@ TEST(PixelCost, APartBehindAPlateExplainsMoreThanOneLaidIntoThePlate) {
         return best;
     };
     EXPECT_GT(best_on_plate(), cost_at(kTruth, observation, options).gain) << "or the plate is no trap";
-    options.deep_m = 0.05 * kPart.extent().diameter_m();
+    options.free_space_depth_m = 0.05 * kPart.extent().diameter_m();
     EXPECT_LT(best_on_plate(), cost_at(kTruth, observation, options).gain);
 }
 
@@ -178,12 +178,12 @@ TEST(PixelCost, AFaceLaidIntoALargerPlaneExplainsNothing) {
     options.with_outline = true;
     const PixelCost laid = cost_at(shifted(0, 0, kWall_m - nearest_m), wall, options);
     EXPECT_GT(laid.agreeing, 50);
-    EXPECT_GT(laid.flush_share(), 0.9);
-    const double within = laid.gain - (options.unexplained_cost - options.outline_cost) * laid.flush;
+    EXPECT_GT(laid.coplanar_share(), 0.9);
+    const double within = laid.gain - (options.unexplained_cost - options.outline_cost) * laid.coplanar;
     EXPECT_LT(within, 0.25 * options.unexplained_cost * laid.agreeing);
     EXPECT_LT(laid.gain, 0.0);
     const PixelCost truth = cost_at(kTruth, observe_part(false), options);
-    EXPECT_LT(truth.flush_share(), 0.1);
+    EXPECT_LT(truth.coplanar_share(), 0.1);
     EXPECT_GT(truth.gain, 0.45 * truth.agreeing) << "an object that stands out keeps what it explains";
 }
 
@@ -226,9 +226,9 @@ TEST(PixelCost, GapsBetweenSamplesAreNoOutline) {
     View view = rasterised(kTruth, observed.camera, 4);
     PixelCostOptions options;
     options.with_outline = true;
-    EXPECT_GT(pixel_cost(view, kTruth, observed, options).flush_share(), 0.8) << "they look like one";
+    EXPECT_GT(pixel_cost(view, kTruth, observed, options).coplanar_share(), 0.8) << "they look like one";
     view.of_samples = true;
-    EXPECT_LT(pixel_cost(view, kTruth, observed, options).flush_share(), 0.2);
+    EXPECT_LT(pixel_cost(view, kTruth, observed, options).coplanar_share(), 0.2);
 }
 
 TEST(Likelihood, LiesBetweenCertainAndIgnorant) {

@@ -18,8 +18,8 @@ Evidence convincing() {
     evidence.pixels.contradicted = 10;
     evidence.pixels.missing_model = 20;
     evidence.pixels.outline = 100;
-    evidence.pixels.flush = 10;
-    evidence.rivals_tried = true;
+    evidence.pixels.coplanar = 10;
+    evidence.alternatives_tried = true;
     evidence.covariance_about_centre = 1e-8 * Matrix6d::Identity();
     return evidence;
 }
@@ -45,10 +45,10 @@ TEST(Verdict, EachDoubtAloneIsEnoughToLookAgain) {
     const std::vector<std::function<void(Evidence&)>> doubts = {
         [](Evidence& e) { e.pixels.contradicted = 150; },                      // much of what is seen disagrees
         [](Evidence& e) { e.pixels.model_rays = 10000; },                      // hardly anything of it is seen
-        [](Evidence& e) { e.pixels.flush = 80; },                              // the surface goes on beyond its outline
+        [](Evidence& e) { e.pixels.coplanar = 80; },                           // the surface goes on beyond its outline
         [](Evidence& e) { e.pixels.missing_model = 5000; },                    // the mask holds much more
-        [](Evidence& e) { e.rival_weight = 0.3; },                             // another pose explains it as well
-        [](Evidence& e) { e.rivals_tried = false; },                           // nobody looked for one
+        [](Evidence& e) { e.alternatives_weight = 0.3; },                      // another pose explains it as well
+        [](Evidence& e) { e.alternatives_tried = false; },                     // nobody looked for one
         [](Evidence& e) { e.covariance_about_centre(4, 4) = 0.002 * 0.002; },  // known to 5 mm only
         [](Evidence& e) { e.covariance_about_centre(0, 0) = 0.02 * 0.02; },    // known to 3 degrees only
     };
@@ -71,9 +71,9 @@ TEST(Verdict, WhatATurnAboutAnAxisOfRevolutionLeavesOpenDoesNotCount) {
 TEST(Verdict, AnImprecisePoseMayConvince) {
     Evidence evidence = convincing();
     evidence.covariance_about_centre = Matrix6d::Identity();
-    EXPECT_TRUE(convinces(evidence));
-    evidence.rival_weight = 0.3;
-    EXPECT_FALSE(convinces(evidence));
+    EXPECT_TRUE(is_verified(evidence));
+    evidence.alternatives_weight = 0.3;
+    EXPECT_FALSE(is_verified(evidence));
 }
 
 TEST(Verdict, ToleranceIsTheUsers) {

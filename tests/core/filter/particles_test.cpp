@@ -12,7 +12,7 @@ ParticleSet particles_at_x(const std::vector<double>& weights) {
     ParticleSet particles;
     for (std::size_t i = 0; i < weights.size(); ++i)
         particles.poses.push_back({Eigen::Quaterniond::Identity(), {static_cast<double>(i), 0, 0}});
-    particles.weights = weights;
+    particles.negative_log_weights = weights;
     return particles;
 }
 
@@ -40,10 +40,10 @@ TEST(Particles, ImpossibleAndUndefinedWeights) {
 TEST(Particles, WeightUpdateIsTheMeanOfOldAndNew) {
     ParticleSet particles = particles_at_x({2.0, 4.0});
     update_weights(particles, {6.0, 0.0});
-    EXPECT_EQ(particles.weights, (std::vector<double>{4.0, 2.0}));
+    EXPECT_EQ(particles.negative_log_weights, (std::vector<double>{4.0, 2.0}));
     // A constant likelihood is the fixed point: weights stay representable for ever.
     for (int frame = 0; frame < 100; ++frame) update_weights(particles, {7.0, 7.0});
-    EXPECT_NEAR(particles.weights[0], 7.0, 1e-12);
+    EXPECT_NEAR(particles.negative_log_weights[0], 7.0, 1e-12);
 }
 
 TEST(Particles, SystematicResamplingTakesEachParticleItsShareRoundedUpOrDown) {
@@ -60,7 +60,7 @@ TEST(Particles, SystematicResamplingTakesEachParticleItsShareRoundedUpOrDown) {
             EXPECT_GE(copies[i], std::floor(5 * p[i] - 1e-9));
             EXPECT_LE(copies[i], std::ceil(5 * p[i] + 1e-9));
         }
-        for (const double weight : resampled.weights) EXPECT_EQ(weight, 0.0);
+        for (const double weight : resampled.negative_log_weights) EXPECT_EQ(weight, 0.0);
     }
 }
 
@@ -98,7 +98,7 @@ TEST(Particles, DiffusionHasTheAskedSpreadAboutTheCentre) {
     const Pose pose{Eigen::Quaterniond(Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY())), {0.1, 0.0, 0.8}};
     ParticleSet particles;
     particles.poses.assign(kCount, pose);
-    particles.weights.assign(kCount, 0.0);
+    particles.negative_log_weights.assign(kCount, 0.0);
     diffuse(particles, {0.02, 0.005}, centre, 1, 1);
     Eigen::Vector3d shift2 = Eigen::Vector3d::Zero(), turn2 = Eigen::Vector3d::Zero();
     for (const Pose& diffused : particles.poses) {

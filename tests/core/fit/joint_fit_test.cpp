@@ -47,9 +47,9 @@ Observation observe_with_errors(const SensorModel& sensor, const Eigen::VectorXd
     return make_observation(image, kCamera, mask, options);
 }
 
-FineFit fit(const Observation& observation, const Pose& start) {
+JointFit fit(const Observation& observation, const Pose& start) {
     const ObservedGrid observed = observe(observation, {0, 0, 1, kCamera.width, kCamera.height});
-    return fit_finely(start, {kPart, kSolver, observation, observed, kStep, Cost::kPixels, {}, true});
+    return fit_jointly(start, {kPart, kSolver, observation, observed, kStep, Cost::kPixels, {}, true});
 }
 
 Twist error_of(const Pose& pose) {
@@ -84,18 +84,18 @@ TEST(SensorField, InterpolatesBetweenNodesWithConstantVariance) {
     }
 }
 
-TEST(FineFit, FindsTheExactPoseOfAnExactImage) {
+TEST(JointFit, FindsTheExactPoseOfAnExactImage) {
     SensorModel sensor = sensor_of_test();
     Mask mask;
     const DepthImage image = test::render(kPart, kTruth, kCamera, 0.9F, &mask);
     ObservationOptions options;
     options.sensor = sensor;
-    const FineFit fitted = fit(make_observation(image, kCamera, mask, options), near_truth());
+    const JointFit fitted = fit(make_observation(image, kCamera, mask, options), near_truth());
     EXPECT_LT(error_of(fitted.camera_from_object).tail<3>().norm(), 2e-5);
     EXPECT_LT(error_of(fitted.camera_from_object).head<3>().norm(), 2e-4);
 }
 
-TEST(FineFit, TheCovarianceIsThatOfTheErrorsOverManySensors) {
+TEST(JointFit, TheCovarianceIsThatOfTheErrorsOverManySensors) {
     // Each trial is another sensor: its field and scale are drawn from what the model says of them.
     const SensorModel sensor = sensor_of_test();
     const SensorField field = field_over(kCamera, sensor);
@@ -106,7 +106,7 @@ TEST(FineFit, TheCovarianceIsThatOfTheErrorsOverManySensors) {
         RandomStream random(7, trial, 0, RandomPurpose::kStart);
         Eigen::VectorXd errors(field.num_unknowns());
         for (int i = 0; i < errors.size(); ++i) errors[i] = std::sqrt(variances[i]) * random.gaussian();
-        const FineFit fitted = fit(observe_with_errors(sensor, errors, 100 + trial), near_truth());
+        const JointFit fitted = fit(observe_with_errors(sensor, errors, 100 + trial), near_truth());
         const Twist error = error_of(fitted.camera_from_object);
         mean_squared_distance += error.dot(fitted.covariance.ldlt().solve(error)) / kTrials;
     }
@@ -115,7 +115,7 @@ TEST(FineFit, TheCovarianceIsThatOfTheErrorsOverManySensors) {
     EXPECT_LT(mean_squared_distance, 8.5);
 }
 
-TEST(FineFit, ASensorWithSharedErrorsIsTrustedLess) {
+TEST(JointFit, ASensorWithSharedErrorsIsTrustedLess) {
     SensorModel exact = sensor_of_test();
     exact.systematic_sigma_m = 0.0;
     exact.depth_scale_sigma = 0.0;
@@ -144,13 +144,13 @@ Observation observe_exactly(const test::BoxViewGenerator& part, const SensorMode
     return make_observation(image, kCamera, mask, options);
 }
 
-TEST(FineFit, APartLargerThanItsCadIsOffByAStepOfTheConstantCovariance) {
+TEST(JointFit, APartLargerThanItsCadIsOffByAStepOfTheConstantCovariance) {
     constexpr double kShare = 0.001;
     SensorModel sensor = sensor_of_test();
     sensor.systematic_sigma_m = 0.0;  // nothing but the pose may give way
     sensor.depth_scale_sigma = 0.0;
-    const FineFit exact = fit(observe_exactly(kPart, sensor), kTruth);
-    const FineFit larger = fit(observe_exactly(enlarged_part(kShare), sensor), kTruth);
+    const JointFit exact = fit(observe_exactly(kPart, sensor), kTruth);
+    const JointFit larger = fit(observe_exactly(enlarged_part(kShare), sensor), kTruth);
     const Twist step = error_of(larger.camera_from_object) - error_of(exact.camera_from_object);
     // The covariance is the square of such a step for one sigma, 0.1 %.
     const Matrix6d squared = step * step.transpose();
@@ -160,7 +160,7 @@ TEST(FineFit, APartLargerThanItsCadIsOffByAStepOfTheConstantCovariance) {
     EXPECT_LT((told - of_translation).norm(), 0.4 * of_translation.norm());
 }
 
-TEST(FineFit, AFieldLargerThanTheSensorsIsReckonedWith) {
+TEST(JointFit, AFieldLargerThanTheSensorsIsReckonedWith) {
     const SensorModel sensor = sensor_of_test();
     const SensorField field = field_over(kCamera, sensor);
     const Eigen::VectorXd variances = prior_variances(field, sensor);
@@ -171,20 +171,20 @@ TEST(FineFit, AFieldLargerThanTheSensorsIsReckonedWith) {
         RandomStream random(9, trial, 0, RandomPurpose::kStart);
         Eigen::VectorXd errors = Eigen::VectorXd::Zero(field.num_unknowns());
         for (int i = 0; i < field.num_nodes(); ++i) errors[i] = kLarger * std::sqrt(variances[i]) * random.gaussian();
-        const FineFit fitted = fit(observe_with_errors(sensor, errors, 300 + trial), near_truth());
+        const JointFit fitted = fit(observe_with_errors(sensor, errors, 300 + trial), near_truth());
         const Twist error = error_of(fitted.camera_from_object);
         mean_squared_distance += error.dot(fitted.covariance.ldlt().solve(error)) / kTrials;
     }
     EXPECT_LT(mean_squared_distance, 15.0) << "a covariance of the sensor's model alone gives up to 6 * 4^2";
 }
 
-TEST(FineFit, APartThatIsNotItsCadIsTrustedLess) {
+TEST(JointFit, APartThatIsNotItsCadIsTrustedLess) {
     const SensorModel sensor = sensor_of_test();
     std::vector<test::Box> boxes = test::asymmetric_part();
     boxes[1].max += Eigen::Vector3d(0.002, 0.0, 0.003);  // a tower of another casting
     boxes[2].max += Eigen::Vector3d(0.0, 0.002, -0.002);
-    const FineFit right = fit(observe_exactly(kPart, sensor), kTruth);
-    const FineFit wrong = fit(observe_exactly(test::BoxViewGenerator(boxes), sensor), kTruth);
+    const JointFit right = fit(observe_exactly(kPart, sensor), kTruth);
+    const JointFit wrong = fit(observe_exactly(test::BoxViewGenerator(boxes), sensor), kTruth);
     for (int i = 0; i < 6; ++i) EXPECT_GT(wrong.covariance(i, i), right.covariance(i, i)) << i;
 }
 

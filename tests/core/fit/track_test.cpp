@@ -43,7 +43,7 @@ TEST(Track, TheArmsMotionMovesThePoseAndWidensItsSpread) {
 TEST(Track, APredictionIsContradictedBeyondTheChiSquareOfBothSpreads) {
     // Along one axis, with 3 and 4 mm of spread: 5 mm together. 22.46 is 4.74 squared.
     const Track track{kPose, diagonal(0.001, 0.003), {}};
-    FineFit fit;
+    JointFit fit;
     fit.covariance = diagonal(0.001, 0.004);
     fit.camera_from_object = perturb_about(kPose, twist(0, 0, 0, 0, 4.73 * 0.005, 0), kCentre);
     EXPECT_FALSE(contradicts(track, fit, kCentre));
@@ -76,7 +76,7 @@ TEST(Track, TheSpreadOfTheMotionIsThatOfItsScatter) {
 
 TEST(Track, AlongWeakDirectionsThePredictionHoldsAlongStrongOnesTheObservationDecides) {
     const Track predicted{kPose, diagonal(0.001, 0.0005), {}};
-    FineFit observed;
+    JointFit observed;
     observed.camera_from_object = perturb_about(kPose, twist(0, 0, 0, 0.03, 0.0004, 0), kCentre);
     observed.covariance = diagonal(0.001, 0.00005);
     observed.covariance(3, 3) = 0.05 * 0.05;  // x is not seen
@@ -91,7 +91,7 @@ TEST(Track, AlongWeakDirectionsThePredictionHoldsAlongStrongOnesTheObservationDe
 
 TEST(Track, StandingStillTheSpreadDoesNotShrinkForEver) {
     Track track{kPose, diagonal(0.002, 0.0003), {}};
-    const FineFit observed{kPose, diagonal(0.002, 0.0003), 1000};
+    const JointFit observed{kPose, diagonal(0.002, 0.0003), 1000};
     for (int frame = 0; frame < 200; ++frame) {
         move_track(track, Pose::identity(), {}, kCentre);
         track = correct_track(track, observed, kCentre);
@@ -101,7 +101,7 @@ TEST(Track, StandingStillTheSpreadDoesNotShrinkForEver) {
 
 TEST(Track, WhatIsWrongInEveryFrameAlikeIsNotAveragedOut) {
     Track track{kPose, diagonal(0.002, 0.0003), {}};
-    const FineFit observed{kPose, diagonal(0.002, 0.0003), 1000, diagonal(0.0, 0.0007)};
+    const JointFit observed{kPose, diagonal(0.002, 0.0003), 1000, diagonal(0.0, 0.0007)};
     for (int frame = 0; frame < 50; ++frame) {
         move_track(track, Pose::identity(), {}, kCentre);
         track = correct_track(track, observed, kCentre);
@@ -111,7 +111,7 @@ TEST(Track, WhatIsWrongInEveryFrameAlikeIsNotAveragedOut) {
 
 TEST(Track, APredictionThatTheObservationContradictsIsLeftOut) {
     const Track predicted{kPose, diagonal(0.001, 0.0003), {}};
-    FineFit observed;
+    JointFit observed;
     observed.camera_from_object = perturb_about(kPose, twist(0, 0, 0, 0.02, 0, 0), kCentre);
     observed.covariance = diagonal(0.001, 0.0002);
     const Track corrected = correct_track(predicted, observed, kCentre);
@@ -124,8 +124,8 @@ TEST(Track, AMovingObjectIsFollowedWithoutLag) {
     double worst_m = 0.0;
     for (int frame = 1; frame <= 30; ++frame) {
         move_track(track, Pose::identity(), {}, kCentre);
-        const FineFit observed{perturb_about(kPose, twist(0, 0, 0, 0.001 * frame, 0, 0), kCentre),
-                               diagonal(0.001, 0.0002), 1000};
+        const JointFit observed{perturb_about(kPose, twist(0, 0, 0, 0.001 * frame, 0, 0), kCentre),
+                                diagonal(0.001, 0.0002), 1000};
         track = correct_track(track, observed, kCentre);
         if (frame > 3)
             worst_m = std::max(worst_m, centre_distance_m(track.camera_from_object, observed.camera_from_object));

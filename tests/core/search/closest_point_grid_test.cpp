@@ -12,15 +12,15 @@ const PinholeCamera kCamera{64, 48, 60.0, 60.0, 31.5, 23.5};
 const Pose kTruth{Eigen::Quaterniond(Eigen::AngleAxisd(2.5, Eigen::Vector3d(1, 0.4, 0.2).normalized())),
                   {0.03, -0.01, 0.35}};
 
-const SurfaceField& field() {
-    static const SurfaceField kField(kPart);
+const ClosestPointGrid& field() {
+    static const ClosestPointGrid kField(kPart);
     return kField;
 }
 
 // What a camera at the true pose measures, in its coordinates.
-std::vector<SurfaceAnchor> measured() {
+std::vector<OrientedPoint> measured() {
     const View view = kPart.generate(kTruth, kCamera);
-    std::vector<SurfaceAnchor> points;
+    std::vector<OrientedPoint> points;
     for (std::size_t k = 0; k < view.size(); ++k)
         points.push_back({(kTruth * view.points_in_object[k].cast<double>()).cast<float>(),
                           kTruth.rotation.cast<float>() * view.normals_in_object[k]});
@@ -29,11 +29,11 @@ std::vector<SurfaceAnchor> measured() {
 
 constexpr double kTolerance_m = 0.006;
 
-TEST(SurfaceField, NearestIsNearAtTheSurfaceAndNothingFarFromIt) {
+TEST(ClosestPointGrid, NearestIsNearAtTheSurfaceAndNothingFarFromIt) {
     const View view = kPart.generate(kTruth, kCamera);
     ASSERT_GT(view.size(), 100U);
     for (const Eigen::Vector3f& point : view.points_in_object) {
-        const SurfaceAnchor* nearest = field().nearest(point);
+        const OrientedPoint* nearest = field().nearest(point);
         ASSERT_NE(nearest, nullptr);
         EXPECT_LT((nearest->point_in_object - point).norm(), field().reach_m());
     }
@@ -43,21 +43,21 @@ TEST(SurfaceField, NearestIsNearAtTheSurfaceAndNothingFarFromIt) {
 }
 
 TEST(ShareOnSurface, AllAtTheTruthAndNoneFarAway) {
-    const std::vector<SurfaceAnchor> points = measured();
-    EXPECT_GT(share_on_surface(field(), kTruth, points, points.size(), kTolerance_m), 0.9);
+    const std::vector<OrientedPoint> points = measured();
+    EXPECT_GT(inlier_share_on(field(), kTruth, points, points.size(), kTolerance_m), 0.9);
     Pose away = kTruth;
     away.translation.z() += 1.0;
-    EXPECT_EQ(share_on_surface(field(), away, points, points.size(), kTolerance_m), 0.0);
-    EXPECT_EQ(share_on_surface(field(), kTruth, {}, 10, kTolerance_m), 0.0);
+    EXPECT_EQ(inlier_share_on(field(), away, points, points.size(), kTolerance_m), 0.0);
+    EXPECT_EQ(inlier_share_on(field(), kTruth, {}, 10, kTolerance_m), 0.0);
 }
 
 TEST(PulledOntoSurface, ComesBackFromANearbyPose) {
-    const std::vector<SurfaceAnchor> points = measured();
+    const std::vector<OrientedPoint> points = measured();
     const Eigen::Vector3d centre = kPart.extent().centre_in_object();
     Twist off;
     off << 0.06, -0.05, 0.06, 0.005, -0.004, 0.005;
     const Pose start = perturb_about(kTruth, off, centre);
-    const Pose pulled = pulled_onto_surface(field(), start, points, 4, kTolerance_m);
+    const Pose pulled = aligned_to_surface(field(), start, points, 4, kTolerance_m);
     EXPECT_LT((pulled * centre - kTruth * centre).norm(), 0.002);
     EXPECT_LT(angle_between(pulled.rotation, kTruth.rotation), 0.02);
 }
@@ -65,7 +65,7 @@ TEST(PulledOntoSurface, ComesBackFromANearbyPose) {
 TEST(PulledOntoSurface, StaysWhereNothingIsNear) {
     Pose away = kTruth;
     away.translation.z() += 1.0;
-    const Pose pulled = pulled_onto_surface(field(), away, measured(), 4, kTolerance_m);
+    const Pose pulled = aligned_to_surface(field(), away, measured(), 4, kTolerance_m);
     EXPECT_LT((pulled.translation - away.translation).norm(), 1e-9);
 }
 

@@ -29,39 +29,37 @@ Observation before_a_wall(bool with_mask) {
     return make_observation(image, kCamera, with_mask ? std::optional(mask) : std::nullopt);
 }
 
-std::vector<Pose> starts(const Observation& observation, const AnchorPairs& pairs, int threads = 1) {
-    const PatchGrid patches = patches_of(observation, pairs, 1, 1);
-    return start_on_pairs(observation, pairs, patches, {20000, 200, 0, threads}, 1, 1);
+std::vector<Pose> starts(const Observation& observation, const PointPairTable& pairs, int threads = 1) {
+    const SurfelGrid surfels = surfels_of(observation, pairs, 1, 1);
+    return hypotheses_from_pairs(observation, pairs, surfels, {20000, 200, 0, threads}, 1, 1);
 }
 
 constexpr double kAngleCell = M_PI / 18.0;  // of the table
 
 // Between either normal and the line, and between the normals [rad].
-std::array<double, 3> angles_of(const SurfaceAnchor& first, const SurfaceAnchor& second) {
-    const Eigen::Vector3f line = (second.point_in_object - first.point_in_object).normalized();
+std::array<double, 3> angles_of(const OrientedPoint& first, const OrientedPoint& second) {
+    const Eigen::Vector3f line = (second.point - first.point).normalized();
     const auto angle = [](float cosine) { return std::acos(std::clamp(static_cast<double>(cosine), -1.0, 1.0)); };
-    return {angle(first.normal_in_object.dot(line)), angle(second.normal_in_object.dot(line)),
-            angle(first.normal_in_object.dot(second.normal_in_object))};
+    return {angle(first.normal.dot(line)), angle(second.normal.dot(line)), angle(first.normal.dot(second.normal))};
 }
 
-TEST(AnchorPairs, APairOfTheModelIsAlikeItself) {
-    const AnchorPairs pairs(kPart);
-    const auto& anchors = pairs.anchors();
+TEST(PointPairTable, APairOfTheModelIsAlikeItself) {
+    const PointPairTable pairs(kPart);
+    const auto& points = pairs.points();
     int tried = 0;
-    for (std::size_t i = 0; i < anchors.size(); i += 97) {
-        for (std::size_t j = 50; j < anchors.size(); j += 311) {
-            const double distance = (anchors[i].point_in_object - anchors[j].point_in_object).norm();
+    for (std::size_t i = 0; i < points.size(); i += 97) {
+        for (std::size_t j = 50; j < points.size(); j += 311) {
+            const double distance = (points[i].point - points[j].point).norm();
             if (distance < pairs.min_distance_m() || distance >= pairs.max_distance_m()) {
-                EXPECT_TRUE(pairs.alike(anchors[i], anchors[j]).empty()) << "out of the table";
+                EXPECT_TRUE(pairs.matches(points[i], points[j]).empty()) << "out of the table";
                 continue;
             }
             ++tried;
-            for (const AnchorPairs::Pair& pair : pairs.alike(anchors[i], anchors[j])) {
-                const double other =
-                    (anchors[pair.first].point_in_object - anchors[pair.second].point_in_object).norm();
+            for (const PointPairTable::Pair& pair : pairs.matches(points[i], points[j])) {
+                const double other = (points[pair.first].point - points[pair.second].point).norm();
                 EXPECT_NEAR(other, distance, 0.06 * pairs.diameter_m()) << "one cell of distances";
-                const auto angles = angles_of(anchors[i], anchors[j]);
-                const auto others = angles_of(anchors[pair.first], anchors[pair.second]);
+                const auto angles = angles_of(points[i], points[j]);
+                const auto others = angles_of(points[pair.first], points[pair.second]);
                 for (int k = 0; k < 3; ++k) {
                     const double cell = std::floor(angles[k] / kAngleCell);
                     EXPECT_GT(others[k], cell * kAngleCell - 1e-3) << "one cell of each angle";
@@ -74,18 +72,18 @@ TEST(AnchorPairs, APairOfTheModelIsAlikeItself) {
 }
 
 TEST(Patches, APlaneLargerThanAnyFaceSaysLittleAndASmallerOneAll) {
-    const AnchorPairs pairs(kPart);
+    const PointPairTable pairs(kPart);
     EXPECT_NEAR(pairs.largest_face_m2(), 0.20 * 0.14, 0.3 * 0.20 * 0.14);
     const Observation observation = before_a_wall(false);
-    const PatchGrid patches = patches_of(observation, pairs, 1, 1);
+    const SurfelGrid surfels = surfels_of(observation, pairs, 1, 1);
     Mask mask;
     test::render(kPart, kTruth, kCamera, 0.8F, &mask);
     double on_part = 0.0, on_wall = 0.0;
     int count_part = 0, count_wall = 0;
     for (int pixel = 0; pixel < kCamera.width * kCamera.height; pixel += 7) {
-        const Patch* patch = patches.at(kCamera, pixel);
-        if (patch == nullptr) continue;
-        (mask.value[pixel] != 0 ? on_part : on_wall) += patch->weight;
+        const Surfel* surfel = surfels.at(kCamera, pixel);
+        if (surfel == nullptr) continue;
+        (mask.value[pixel] != 0 ? on_part : on_wall) += surfel->weight;
         (mask.value[pixel] != 0 ? count_part : count_wall) += 1;
     }
     EXPECT_GT(on_part / count_part, 0.9);
@@ -93,7 +91,7 @@ TEST(Patches, APlaneLargerThanAnyFaceSaysLittleAndASmallerOneAll) {
 }
 
 TEST(StartOnPairs, FindsThePartWithAndWithoutAMask) {
-    const AnchorPairs pairs(kPart);
+    const PointPairTable pairs(kPart);
     for (const bool with_mask : {true, false}) {
         const std::vector<Pose> poses = starts(before_a_wall(with_mask), pairs);
         const auto found = std::find_if(poses.begin(), poses.end(), near_truth);
@@ -103,14 +101,14 @@ TEST(StartOnPairs, FindsThePartWithAndWithoutAMask) {
 }
 
 TEST(StartOnPairs, GivesNothingWhereNothingIsMeasured) {
-    const AnchorPairs pairs(kPart);
+    const PointPairTable pairs(kPart);
     const DepthImage empty{kCamera.width, kCamera.height,
                            std::vector<float>(static_cast<std::size_t>(kCamera.width) * kCamera.height, 0.0F)};
     EXPECT_TRUE(starts(make_observation(empty, kCamera, {}), pairs).empty());
 }
 
 TEST(StartOnPairs, TheSameBitsForAnyNumberOfThreads) {
-    const AnchorPairs pairs(kPart);
+    const PointPairTable pairs(kPart);
     const Observation observation = before_a_wall(true);
     const std::vector<Pose> one = starts(observation, pairs, 1), three = starts(observation, pairs, 3);
     ASSERT_EQ(one.size(), three.size());

@@ -22,7 +22,7 @@ Observation observe_part() {
 
 TEST(Start, SphereHasTheCloudsMeanDistanceAsRadiusAndAllOrientations) {
     const Observation observation = observe_part();
-    const ParticleSet particles = start_on_sphere(observation, kPart.extent(), 2000, 1, 1);
+    const ParticleSet particles = sample_on_sphere(observation, kPart.extent(), 2000, 1, 1);
     ASSERT_EQ(particles.size(), 2000);
     Eigen::Matrix3d outer = Eigen::Matrix3d::Zero();
     for (const Pose& pose : particles.poses) {
@@ -36,7 +36,7 @@ TEST(Start, SphereHasTheCloudsMeanDistanceAsRadiusAndAllOrientations) {
 }
 
 TEST(Start, AroundAPoseKeepsThePoseItself) {
-    const ParticleSet particles = start_around(kTruth, {0.1, 0.01}, kPart.extent(), 500, 1, 1);
+    const ParticleSet particles = sample_around(kTruth, {0.1, 0.01}, kPart.extent(), 500, 1, 1);
     EXPECT_EQ(angle_between(particles.poses[0].rotation, kTruth.rotation), 0.0);
     double sum2 = 0.0;
     for (const Pose& pose : particles.poses) {
@@ -47,36 +47,36 @@ TEST(Start, AroundAPoseKeepsThePoseItself) {
 }
 
 TEST(Start, AnchorsLieOnTheSurfaceWithOutwardNormalsOnAllSides) {
-    const auto anchors = find_anchors(kPart);
-    ASSERT_GT(anchors.size(), 500U);
+    const auto points = sample_surface(kPart);
+    ASSERT_GT(points.size(), 500U);
     std::array<int, 6> sides{};
-    for (const SurfaceAnchor& anchor : anchors) {
+    for (const OrientedPoint& point_of_model : points) {
         // A step outwards is seen from there: the ray back hits the surface at that point.
-        const Eigen::Vector3d eye = (anchor.point_in_object + 0.001F * anchor.normal_in_object).cast<double>();
+        const Eigen::Vector3d eye = (point_of_model.point + 0.001F * point_of_model.normal).cast<double>();
         bool inside = false;
         for (const test::Box& box : test::asymmetric_part())
             inside |= (eye.array() > box.min.array()).all() && (eye.array() < box.max.array()).all();
         EXPECT_FALSE(inside);
         int axis = 0;
-        anchor.normal_in_object.cwiseAbs().maxCoeff(&axis);
-        ++sides[2 * axis + (anchor.normal_in_object[axis] > 0)];
+        point_of_model.normal.cwiseAbs().maxCoeff(&axis);
+        ++sides[2 * axis + (point_of_model.normal[axis] > 0)];
     }
     for (const int side : sides) EXPECT_GT(side, 50);
 }
 
 TEST(Start, SurfaceStartsLayAnAnchorOnAMeasuredPointNormalOnNormal) {
     const Observation observation = observe_part();
-    const std::vector<SurfaceAnchor> one = {{{0.1F, 0.02F, 0.01F}, {1, 0, 0}}};
-    for (const Pose& pose : start_on_surface(observation, one, 50, 1, 1, 0).poses) {
-        const Eigen::Vector3f point = (pose * one[0].point_in_object.cast<double>()).cast<float>();
-        const Eigen::Vector3f normal = (pose.rotation * one[0].normal_in_object.cast<double>()).cast<float>();
+    const std::vector<OrientedPoint> one = {{{0.1F, 0.02F, 0.01F}, {1, 0, 0}}};
+    for (const Pose& pose : sample_on_surface(observation, one, 50, 1, 1, 0).poses) {
+        const Eigen::Vector3f point = (pose * one[0].point.cast<double>()).cast<float>();
+        const Eigen::Vector3f normal = (pose.rotation * one[0].normal.cast<double>()).cast<float>();
         float best = 1.0F;
         for (std::size_t p = 0; p < observation.points_in_camera().size(); ++p)
             best = std::min(best, (observation.points_in_camera()[p] - point).norm() +
                                       (observation.normals_in_camera()[p] - normal).norm());
         EXPECT_LT(best, 1e-4F);
     }
-    EXPECT_EQ(start_on_surface(observation, {}, 50, 1, 1, 0).size(), 0);
+    EXPECT_EQ(sample_on_surface(observation, {}, 50, 1, 1, 0).size(), 0);
 }
 
 TEST(Start, ShiftLaysTheSeenSurfaceOnTheMeasuredOne) {

@@ -37,7 +37,7 @@ TEST(Modes, RivalsTurnAboutTheCentreOrShiftAlongAnAxisAndAreNeverThePoseItself) 
     const ModelExtent extent{{-0.1, 0.0, 0.2}, {0.3, 0.2, 0.5}};
     const Eigen::Vector3d centre = extent.centre_in_object();
     const Pose pose{Eigen::Quaterniond(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitX())), {0, 0, 1}};
-    const auto rivals = rivals_of(pose, extent, 200, 1, 1);
+    const auto rivals = alternatives_of(pose, extent, 200, 1, 1);
     ASSERT_EQ(rivals.size(), 200U);
     int half_turns = 0, pure_shifts = 0;
     for (const Pose& rival : rivals) {

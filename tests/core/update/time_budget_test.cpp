@@ -32,13 +32,13 @@ TEST(TimeBudget, WhatItAllowsFitsIntoWhatIsLeft) {
 
 TEST(TimeBudget, ADearUnitIsRememberedForAWhile) {
     TimeBudget budget(1.0);
-    for (int k = 0; k < 200; ++k) budget.took(Stage::kRivals, 1, 1e-4);
-    const int usual = budget.affordable(Stage::kRivals, 1'000'000, 0, 0.0);
-    budget.took(Stage::kRivals, 1, 1e-2);
-    budget.took(Stage::kRivals, 1, 1e-4);
-    EXPECT_LT(budget.affordable(Stage::kRivals, 1'000'000, 0, 0.0), usual / 50);
-    for (int k = 0; k < 100; ++k) budget.took(Stage::kRivals, 1, 1e-4);
-    EXPECT_EQ(budget.affordable(Stage::kRivals, 1'000'000, 0, 0.0), usual);
+    for (int k = 0; k < 200; ++k) budget.took(Stage::kAlternatives, 1, 1e-4);
+    const int usual = budget.affordable(Stage::kAlternatives, 1'000'000, 0, 0.0);
+    budget.took(Stage::kAlternatives, 1, 1e-2);
+    budget.took(Stage::kAlternatives, 1, 1e-4);
+    EXPECT_LT(budget.affordable(Stage::kAlternatives, 1'000'000, 0, 0.0), usual / 50);
+    for (int k = 0; k < 100; ++k) budget.took(Stage::kAlternatives, 1, 1e-4);
+    EXPECT_EQ(budget.affordable(Stage::kAlternatives, 1'000'000, 0, 0.0), usual);
 }
 
 }  // namespace
