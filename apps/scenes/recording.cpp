@@ -63,31 +63,6 @@ Mask none_of(const Mask& mask) {
     return {mask.width, mask.height, std::vector<std::uint8_t>(mask.value.size(), 0)};
 }
 
-// Which frames there are, by their place on the path, and what happens in them.
-struct Events {
-    explicit Events(const RecordingOptions& options)
-        : ids(kept_frames(options)),
-          moved_from(move_frame(options.disturbances, frames_of(options))),
-          nonsense(nonsense_frames(options.disturbances, ids, frames_of(options), options.seed)) {}
-
-    std::vector<int> ids;
-    std::optional<int> moved_from;  // the part lies elsewhere from this frame on
-    std::vector<int> nonsense;      // frames whose depth is not of the scene
-};
-
-// What is before the camera.
-struct Stage {
-    Stage(const Mesh& mesh, const Part& part, const RecordingOptions& options, const TaskPath& path)
-        : world(world_of(options.scenario, mesh, part, path, options.camera, options.seed,
-                         {options.with_table, options.path.occlusion, options.part_name})),
-          other(stand_in_of(options, part, path)),
-          scene(other ? other->mesh : mesh, world) {}
-
-    World world;
-    std::optional<StandIn> other;  // in the part's place
-    Scene scene;
-};
-
 // What the camera has before it, and what of it a segmentation takes for the part.
 struct Sight {
     RenderedFrame rendered;
@@ -127,6 +102,31 @@ void validate(const RecordingOptions& options) {
 }
 
 struct Recording::Impl {
+    // Which frames there are, by their place on the path, and what happens in them.
+    struct Events {
+        explicit Events(const RecordingOptions& options)
+            : ids(kept_frames(options)),
+              moved_from(move_frame(options.disturbances, frames_of(options))),
+              nonsense(nonsense_frames(options.disturbances, ids, frames_of(options), options.seed)) {}
+
+        std::vector<int> ids;
+        std::optional<int> moved_from;  // the part lies elsewhere from this frame on
+        std::vector<int> nonsense;      // frames whose depth is not of the scene
+    };
+
+    // What is before the camera.
+    struct Stage {
+        Stage(const Mesh& mesh, const Part& part, const RecordingOptions& options, const TaskPath& path)
+            : world(world_of(options.scenario, mesh, part, path, options.camera, options.seed,
+                             {options.with_table, options.path.occlusion, options.part_name})),
+              other(stand_in_of(options, part, path)),
+              scene(other ? other->mesh : mesh, world) {}
+
+        World world;
+        std::optional<StandIn> other;  // in the part's place
+        Scene scene;
+    };
+
     Impl(const Mesh& mesh, const Part& part, const RecordingOptions& given)
         : options(checked(given)),
           extent(part.extent),
