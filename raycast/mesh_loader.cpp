@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "raycast/internal/mesh_files.hpp"
-#include "raycast/internal/point_cloud.hpp"
+#include "raycast/mesh_files/point_cloud.hpp"
+#include "raycast/mesh_files/readers.hpp"
 
 namespace nearpose {
 namespace {

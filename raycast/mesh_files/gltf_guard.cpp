@@ -1,4 +1,4 @@
-#include "raycast/internal/gltf_guard.hpp"
+#include "raycast/mesh_files/gltf_guard.hpp"
 
 #include <algorithm>
 #include <array>

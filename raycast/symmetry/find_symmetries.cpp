@@ -1,12 +1,13 @@
+#include "raycast/symmetry/find_symmetries.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
-#include "core/self_similarity.hpp"
-#include "core/symmetry.hpp"
-#include "core/symmetry_axes.hpp"
+#include "raycast/symmetry/self_similarity.hpp"
+#include "raycast/symmetry/symmetry_axes.hpp"
 
 namespace nearpose {
 namespace {

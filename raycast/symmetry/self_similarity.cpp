@@ -1,4 +1,4 @@
-#include "core/self_similarity.hpp"
+#include "raycast/symmetry/self_similarity.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

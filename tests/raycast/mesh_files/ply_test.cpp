@@ -2,9 +2,9 @@
 #include <cstring>
 #include <limits>
 
-#include "raycast/internal/mesh_files.hpp"
+#include "raycast/mesh_files/readers.hpp"
 #include "raycast/mesh_loader.hpp"
-#include "shapes.hpp"
+#include "tests/raycast/shapes.hpp"
 
 namespace nearpose::test {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "core/self_similarity.hpp"
 #include "core/symmetry.hpp"
+#include "raycast/symmetry/self_similarity.hpp"
 
 namespace nearpose {
 

@@ -1,4 +1,4 @@
-#include "core/symmetry_axes.hpp"
+#include "raycast/symmetry/symmetry_axes.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
