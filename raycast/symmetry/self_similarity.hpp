@@ -1,4 +1,4 @@
-// How alike a part looks to itself after a turn: views of it from all around against views of the turned part.
+// How well a model agrees with itself after a turn: views of it from all around against views of the turned model.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,6 +7,7 @@
 #include "core/camera.hpp"
 #include "core/pose.hpp"
 #include "core/view_generator.hpp"
+#include "raycast/symmetry/symmetry_search_options.hpp"
 
 namespace nearpose {
 
@@ -30,23 +31,27 @@ struct ViewsAround {
 
 ViewsAround look_from_all_around(const ViewGenerator& views, int directions, int pixels_across);
 
-// Of the rays that meet the part before or after the turn, those on which the two surfaces lie farther apart than the
-// tolerance.
-struct Likeness {
-    int rays = 0, differing = 0;
+// Counts over the rays that meet the model before or after the turn.
+struct SelfAgreement {
+    int rays = 0;
+    int differing = 0;  // of them: only one of the two surfaces is met, or they lie farther apart than the tolerance
+
     double share() const { return rays > 0 ? 1.0 - static_cast<double>(differing) / rays : 0.0; }  // in 0..1
 };
 
-// Casts every `stride`-th ray in u and v. Ends as soon as the share must stay below `least_share`, with what it has
-// until then, which lies below.
-Likeness likeness(const ViewsAround& around, const Pose& turn, double tolerance_m, int stride, double least_share);
+// Casts every `stride`-th ray in u and v. Ends early once the share will surely stay below `least_share`; what it then
+// returns lies below it too.
+SelfAgreement self_agreement(const ViewsAround& around, const Pose& turn, double tolerance_m, int stride,
+                             double least_share);
 
-// `turn` (object_from_object) after some point-to-plane steps that lay the turned surface on the surface.
-Pose refined_turn(const ViewsAround& around, const Pose& turn, double tolerance_m);
+// `turn` (object_from_object) after some steps of point-to-plane alignment of the turned surface with the surface.
+Pose refined_turn(const ViewsAround& around, const Pose& turn, double tolerance_m,
+                  const AxisRefinementOptions& options);
 
-// Whether the surface differs anywhere after the turn. A ray agrees if the surface that it meets has a counterpart
-// within the tolerance, beside the ray too: contours move by as much as the surface does. Single rays that differ are
-// the seams of tessellations; several that lie together are a detail.
-bool shows_a_difference(const ViewsAround& around, const Pose& turn, double tolerance_m);
+// Whether the surface differs anywhere after the turn. On a ray it agrees if what the ray meets has a counterpart
+// within the tolerance, on the ray or beside it: contours move by as much as the surface does. Single rays that differ
+// are the seams of tessellations; several that lie together are a detail.
+bool shows_a_difference(const ViewsAround& around, const Pose& turn, double tolerance_m,
+                        const DifferenceOptions& options);
 
 }  // namespace nearpose

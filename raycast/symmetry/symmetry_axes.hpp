@@ -10,12 +10,13 @@ namespace nearpose {
 
 struct CandidateAxes {
     std::vector<AxisOfRevolution> axes;
-    // Axes whose perpendiculars may be axes of half turns, in any direction.
-    std::vector<AxisOfRevolution> spindles;
+    // Dihedral axes: perpendiculars of theirs, in any direction, may be axes of half turns.
+    std::vector<AxisOfRevolution> dihedral_axes;
 };
 
-// The axes of the model's box, the principal axes of the surface that can be seen, and where all principal moments are
-// alike (a cube) those that the directions of its faces suggest; each through the surface's centroid or the box centre.
-CandidateAxes candidate_axes(const ViewsAround& around);
+// The axes of the model's box and the principal axes of the surface that is seen. Where all principal moments are equal
+// (a cube), also those that the directions of its faces suggest. Each passes through the surface's centroid or the
+// centre of the box.
+CandidateAxes candidate_axes(const ViewsAround& around, const CandidateAxisOptions& options);
 
 }  // namespace nearpose

@@ -217,6 +217,9 @@ TEST(FindSymmetries, NothingToSeeNothingFoundAndBoundsAreChecked) {
     const EmbreeViewGenerator box(test::make_box({0.02F, 0.03F, 0.05F}));
     EXPECT_THROW(find_symmetries(box, 0.0), std::invalid_argument);
     EXPECT_THROW(find_symmetries(box, std::nan("")), std::invalid_argument);
+    SymmetrySearchOptions no_fold;
+    no_fold.max_fold = 1;
+    EXPECT_THROW(find_symmetries(box, kResolution_m, no_fold), std::invalid_argument);
     EXPECT_EQ(find(test::make_square(0.1F)).discrete.size(), 7U) << "a sheet is seen from both sides";
 }
 
