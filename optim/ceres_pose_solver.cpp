@@ -49,13 +49,13 @@ SolveResult CeresPoseSolver::solve(const Correspondences& pairs, const Pose& cam
     const NormalisedPairs normalised(pairs, options_.residual);
     if (!normalised.usable || !is_valid(camera_from_object)) return result;
 
-    RegistrationCost cost(normalised, options_.residual, options_.loss, options_.loss_scale_sigmas,
+    RegistrationCost cost(normalised, {options_.residual, options_.loss, options_.loss_scale_sigmas},
                           normalised.normalised(camera_from_object));
     Twist parameters = Twist::Zero();
-    const NormalEquations at_start = cost.sums_at(parameters);
+    const RegistrationEquations at_start = cost.sums_at(parameters);
     if (!is_finite(at_start)) return result;
-    // The same damping for all directions. Levenberg and Marquardt's usual one follows the diagonal of J^T J, and a
-    // plane that is tilted by a hundredth would be reached by sliding along it a hundred times as far.
+    // The same damping for all directions. The usual one of Levenberg and Marquardt follows the diagonal of J^T J: a
+    // plane tilted by a hundredth against an axis would then be reached by sliding along it, a hundred times as far.
     cost.set_stay(options_.damping * std::max(normalised.total_squared_weight, at_start.jtj.trace()));
     ceres::TinySolver<RegistrationCost> solver;
     solver.options.initial_trust_region_radius = 1e8;
@@ -67,7 +67,7 @@ SolveResult CeresPoseSolver::solve(const Correspondences& pairs, const Pose& cam
     solver.Solve(cost, &parameters);
 
     const Pose found = normalised.metric(cost.pose_at(parameters.data()));
-    const NormalEquations& at_end = cost.sums_at(parameters);
+    const RegistrationEquations& at_end = cost.sums_at(parameters);
     result.initial_cost = result.final_cost = 0.5 * at_start.rtr;
     if (!is_finite(at_end) || !(at_end.rtr <= at_start.rtr) || !is_valid(found)) return result;
     result.camera_from_object = found;

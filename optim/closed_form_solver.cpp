@@ -50,7 +50,8 @@ SolveResult ClosedFormPoseSolver::solve(const Correspondences& pairs, const Pose
 
     const WeightedMoments moments = weighted_moments(normalised);
     const auto cost = [&normalised](const Pose& pose) {
-        return 0.5 * normal_equations(normalised, pose, ResidualKind::kPointToPoint, RobustLoss::kNone, 1.0).rtr;
+        return 0.5 *
+               registration_equations(normalised, pose, {ResidualKind::kPointToPoint, RobustLoss::kNone, 1.0}).rtr;
     };
     result.initial_cost = result.final_cost = cost(normalised.normalised(camera_from_object));
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(moments.cross, Eigen::ComputeFullU | Eigen::ComputeFullV);

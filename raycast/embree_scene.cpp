@@ -13,15 +13,19 @@
 #include <stdexcept>
 #include <string>
 
+#include "raycast/internal/exact_surface.hpp"
+
 namespace nearpose {
 namespace {
 
 constexpr int kBlock = 4;  // a packet is a block of 4x4 pixels, whose rays meet the same part of the tree
 constexpr int kPacket = kBlock * kBlock;
-// Steeper rays and farther cameras are refused; Embree stops the process for numbers above 1e18.
-constexpr double kMaxRaySlope = 1e6;
+}  // namespace
 
-[[noreturn]] void throw_device_error(RTCError code, const std::string& detail) {
+// Named, since these types are members of EmbreeScene::Impl, which is not of this file alone.
+namespace embree {
+
+[[noreturn]] static void throw_device_error(RTCError code, const std::string& detail) {
     throw std::runtime_error("Embree error " + std::to_string(static_cast<int>(code)) +
                              " while the model was prepared" + (detail.empty() ? "" : ": " + detail) +
                              (code == RTC_ERROR_OUT_OF_MEMORY ? " (reduce the number of triangles)" : ""));
@@ -57,6 +61,10 @@ using DeviceHandle = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDe
 using SceneHandle = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
 using GeometryHandle = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, ReleaseGeometry>;
 
+}  // namespace embree
+
+namespace {
+
 // As single rays of a packet: those of the filter's coarse grids part early in the tree, where Embree's traversal for
 // coherent ones takes 1.4 times as long.
 void intersect(const std::array<int, kPacket>& valid, RTCScene scene, RTCRayHit16& packet) {
@@ -73,46 +81,6 @@ void intersect(const std::array<int, kPacket>& valid, RTCScene scene, RTCRayHit1
 #endif
 }
 
-// The rays of one camera in the object frame: origin + depth * direction, so that Embree's ray parameter is the depth.
-struct RayBundle {
-    RayBundle(const Pose& camera_from_object, const PinholeCamera& pinhole) : camera(pinhole) {
-        const Pose object_from_camera = camera_from_object.inverse();
-        object_from_camera_rotation = object_from_camera.rotation_matrix();
-        origin_in_object = object_from_camera.translation;
-        for (int u = 0; u < camera.width; ++u) x.push_back(camera.ray(u, 0).x());
-        for (int v = 0; v < camera.height; ++v) y.push_back(camera.ray(0, v).y());
-    }
-    Eigen::Vector3d direction(int u, int v) const {
-        return object_from_camera_rotation *
-               Eigen::Vector3d(x[static_cast<std::size_t>(u)], y[static_cast<std::size_t>(v)], 1.0);
-    }
-
-    PinholeCamera camera;
-    Eigen::Matrix3d object_from_camera_rotation;
-    Eigen::Vector3d origin_in_object;
-    std::vector<double> x, y;  // camera.ray's, of columns and rows
-};
-
-void require_castable(const Pose& camera_from_object, const PinholeCamera& camera) {
-    if (!is_valid(camera_from_object)) {
-        throw std::invalid_argument(
-            "cast: the pose is not valid (a number is not finite, the quaternion not of unit "
-            "length, or the translation beyond 1e6 m)");
-    }
-    validate(camera);
-    for (const Eigen::Vector3d& ray : {camera.ray(0, 0), camera.ray(camera.width, camera.height)}) {
-        if (!(ray.cwiseAbs().maxCoeff() < kMaxRaySlope)) {
-            throw std::invalid_argument("cast: rays of this camera are steeper than 1e6: check fx, fy, cx, cy");
-        }
-    }
-}
-
-// What a ray met. primitive is -1 without a hit.
-struct Hit {
-    int primitive = -1;
-    float depth = 0.0F;  // as Embree found it [m]
-};
-
 }  // namespace
 
 struct EmbreeScene::Impl {
@@ -120,38 +88,30 @@ struct EmbreeScene::Impl {
 
     void attach_triangles();
     void attach_discs();
-    void cast_block(const RayBundle& bundle, int first_u, int first_v, RTCRayHit16& packet, Hit* band) const;
-    void append(const RayBundle& bundle, int u, int v, const Hit& hit, RayHits& hits) const;
-    void set_normals();
-    Eigen::Vector3d point_on(int primitive) const;  // [m], object frame
+    void cast_block(const RayBundle& bundle, int first_u, int first_v, RTCRayHit16& packet, PrimitiveHit* band) const;
 
     // The handles stand after what their callbacks and buffers refer to, so that they go first.
-    Mesh mesh;
-    // Of every triangle, or of every disc of an oriented cloud: computing them for each ray takes as long as the ray.
-    // Empty where a disc faces the ray.
-    std::vector<Eigen::Vector3d> plane_normals;  // of any length
-    std::vector<Eigen::Vector3f> unit_normals;
+    ExactSurface surface;
     ModelExtent extent;
-    ErrorLog errors;
-    DeviceHandle device;
-    SceneHandle scene;
+    embree::ErrorLog errors;
+    embree::DeviceHandle device;
+    embree::SceneHandle scene;
 };
 
-EmbreeScene::Impl::Impl(const Mesh& source) : mesh(clean(source, "mesh")), extent(extent_of(mesh)) {
-    set_normals();
+EmbreeScene::Impl::Impl(const Mesh& source) : surface(clean(source, "mesh")), extent(extent_of(surface.mesh())) {
     // One thread builds and none is started: the callers' threads are the only ones, and the tree is always the same.
     device.reset(rtcNewDevice("threads=1,start_threads=0,set_affinity=0"));
-    if (!device) throw_device_error(rtcGetDeviceError(nullptr), "no device");
-    rtcSetDeviceErrorFunction(device.get(), ErrorLog::record, &errors);
+    if (!device) embree::throw_device_error(rtcGetDeviceError(nullptr), "no device");
+    rtcSetDeviceErrorFunction(device.get(), embree::ErrorLog::record, &errors);
     scene.reset(rtcNewScene(device.get()));
     errors.check();
     // Not RTC_SCENE_FLAG_ROBUST: it takes up to 1.8 times as long, for one ray in some ten million that runs
     // through an edge to the micrometre and may slip between its triangles. The better tree is worth a tenth of the
     // time; for a large mesh it takes seconds and half as much memory again.
     constexpr std::size_t kLargeMesh = 300'000;
-    rtcSetSceneBuildQuality(scene.get(),
-                            mesh.triangles.size() < kLargeMesh ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM);
-    if (mesh.is_cloud()) {
+    rtcSetSceneBuildQuality(
+        scene.get(), surface.mesh().triangles.size() < kLargeMesh ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM);
+    if (surface.mesh().is_cloud()) {
         attach_discs();
     } else {
         attach_triangles();
@@ -166,7 +126,8 @@ EmbreeScene::Impl::Impl(const Mesh& source) : mesh(clean(source, "mesh")), exten
 }
 
 void EmbreeScene::Impl::attach_triangles() {
-    const GeometryHandle geometry(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
+    const Mesh& mesh = surface.mesh();
+    const embree::GeometryHandle geometry(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
     errors.check();
     auto* vertices =
         static_cast<float*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
@@ -182,13 +143,14 @@ void EmbreeScene::Impl::attach_triangles() {
 }
 
 void EmbreeScene::Impl::attach_discs() {
+    const Mesh& mesh = surface.mesh();
     if (!(mesh.disc_radius_m > 0.0F) || !std::isfinite(mesh.disc_radius_m)) {
         throw std::invalid_argument("a cloud needs a disc radius above 0 m to be seen, not " +
                                     std::to_string(mesh.disc_radius_m));
     }
     const bool oriented = !mesh.vertex_normals_in_object.empty();
     const std::size_t count = mesh.vertices_in_object.size();
-    const GeometryHandle geometry(
+    const embree::GeometryHandle geometry(
         rtcNewGeometry(device.get(), oriented ? RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT : RTC_GEOMETRY_TYPE_DISC_POINT));
     errors.check();
     auto* discs = static_cast<float*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0,
@@ -210,26 +172,8 @@ void EmbreeScene::Impl::attach_discs() {
     errors.check();
 }
 
-void EmbreeScene::Impl::set_normals() {
-    for (const Eigen::Vector3f& normal : mesh.vertex_normals_in_object)
-        if (mesh.is_cloud()) plane_normals.push_back(normal.cast<double>());
-    for (const auto& triangle : mesh.triangles) {
-        const auto vertex = [&](int k) {
-            return Eigen::Vector3d(mesh.vertices_in_object[static_cast<std::size_t>(triangle[k])].cast<double>());
-        };
-        plane_normals.push_back((vertex(1) - vertex(0)).cross(vertex(2) - vertex(0)));
-    }
-    for (const Eigen::Vector3d& normal : plane_normals) unit_normals.push_back(normal.normalized().cast<float>());
-}
-
-Eigen::Vector3d EmbreeScene::Impl::point_on(int primitive) const {
-    const auto index = static_cast<std::size_t>(primitive);
-    const std::size_t vertex = mesh.is_cloud() ? index : static_cast<std::size_t>(mesh.triangles[index][0]);
-    return mesh.vertices_in_object[vertex].cast<double>();
-}
-
 void EmbreeScene::Impl::cast_block(const RayBundle& bundle, int first_u, int first_v, RTCRayHit16& packet,
-                                   Hit* band) const {
+                                   PrimitiveHit* band) const {
     alignas(64) std::array<int, kPacket> valid{};
     for (int k = 0; k < kPacket; ++k) {
         const int u = first_u + k % kBlock;
@@ -248,29 +192,9 @@ void EmbreeScene::Impl::cast_block(const RayBundle& bundle, int first_u, int fir
     intersect(valid, scene.get(), packet);
     for (int k = 0; k < kPacket; ++k) {
         if (valid[static_cast<std::size_t>(k)] == 0 || packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
-        Hit& hit = band[(k / kBlock) * bundle.camera.width + first_u + k % kBlock];
+        PrimitiveHit& hit = band[(k / kBlock) * bundle.camera.width + first_u + k % kBlock];
         hit = {static_cast<int>(packet.hit.primID[k]), packet.ray.tfar[k]};
     }
-}
-
-// Embree's depth is a float whose last bits depend on the instruction set. The depth of the plane that was hit is
-// computed again in double; where it does not agree (a ray within the plane) Embree's stays.
-void EmbreeScene::Impl::append(const RayBundle& bundle, int u, int v, const Hit& hit, RayHits& hits) const {
-    const Eigen::Vector3d direction = bundle.direction(u, v);
-    const bool faces_ray = plane_normals.empty();
-    const Eigen::Vector3d normal = faces_ray ? Eigen::Vector3d(-direction) : plane_normals[hit.primitive];
-    const double slope = normal.dot(direction);
-    const double plane_depth = normal.dot(point_on(hit.primitive) - bundle.origin_in_object) / slope;
-    const bool agrees = std::abs(plane_depth - hit.depth) <= 1e-4 * hit.depth;  // false for NaN
-    const double depth = agrees ? plane_depth : static_cast<double>(hit.depth);
-    if (!std::isfinite(depth) || !(depth > 0.0)) return;
-
-    hits.pixels.push_back(v * bundle.camera.width + u);
-    hits.points_in_object.emplace_back((bundle.origin_in_object + depth * direction).cast<float>());
-    const Eigen::Vector3f unit =
-        faces_ray ? Eigen::Vector3f(normal.normalized().cast<float>()) : unit_normals[hit.primitive];
-    hits.normals_in_object.emplace_back(slope > 0.0 ? Eigen::Vector3f(-unit) : unit);
-    hits.depth_m.push_back(static_cast<float>(depth));
 }
 
 EmbreeScene::EmbreeScene(const Mesh& mesh) : impl_(std::make_unique<const Impl>(mesh)) {}
@@ -299,17 +223,17 @@ RayHits EmbreeScene::cast(const Pose& camera_from_object, const PinholeCamera& c
     std::fill_n(packet.ray.mask, kPacket, ~0U);
     RayHits hits;
     hits.reserve(static_cast<std::size_t>(camera.width) * camera.height);
-    std::vector<Hit> band(static_cast<std::size_t>(kBlock * camera.width));
+    std::vector<PrimitiveHit> band(static_cast<std::size_t>(kBlock * camera.width));
     for (int first_v = 0; first_v < camera.height; first_v += kBlock) {
-        std::fill(band.begin(), band.end(), Hit{});
+        std::fill(band.begin(), band.end(), PrimitiveHit{});
         for (int first_u = 0; first_u < camera.width; first_u += kBlock) {
             impl_->cast_block(bundle, first_u, first_v, packet, band.data());
         }
         const int end_v = std::min(first_v + kBlock, camera.height);
         for (int v = first_v; v < end_v; ++v) {
             for (int u = 0; u < camera.width; ++u) {
-                const Hit& hit = band[static_cast<std::size_t>((v - first_v) * camera.width + u)];
-                if (hit.primitive >= 0) impl_->append(bundle, u, v, hit, hits);
+                const PrimitiveHit& hit = band[static_cast<std::size_t>((v - first_v) * camera.width + u)];
+                if (hit.primitive >= 0) impl_->surface.append(bundle, u, v, hit, hits);
             }
         }
     }

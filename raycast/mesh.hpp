@@ -32,10 +32,10 @@ struct MeshRepair {
     std::int64_t vertices_joined = 0;  // equal to an earlier vertex; no fault, STL stores every corner three times
 };
 
-// Returns `mesh` without what a ray caster cannot stand: vertices that are not finite and their triangles, triangles of
-// an area below (1e-7 * diameter)^2, indices out of range. Equal vertices are joined, and vertices without a triangle
-// dropped; of a cloud only the points that are not finite go. Adds to the counts of `repair` where one is given.
-// Throws std::runtime_error, naming `source` (a file or what the mesh was made from), if nothing is left.
+// Returns `mesh` without what a ray caster cannot handle: vertices that are not finite and their triangles, triangles
+// of an area below (1e-7 * diameter)^2, indices out of range. Equal vertices are joined, and vertices without a
+// triangle dropped; of a cloud only the points that are not finite go. Adds to the counts of `repair` where one is
+// given. Throws std::runtime_error, naming `source` (a file or what the mesh was made from), if nothing is left.
 Mesh clean(Mesh mesh, const std::string& source, MeshRepair* repair = nullptr);
 
 }  // namespace nearpose

@@ -10,12 +10,12 @@ namespace nearpose {
 // Radii [diameters] from as close as a sphere around the whole object can be, in steps of ratio 1.5, so that no camera
 // between is off by more than 1.22.
 inline constexpr double kNestedRadii_diameters[] = {0.6, 0.9, 1.35, 2.0};
-// Spheres of these radii, else by default.
+// The options of one sphere for each of these radii; everything else as by default.
 std::vector<SphereOptions> nested_spheres();
 
-// A store of views from a single radius gets the perspective wrong wherever the camera is nearer or farther. Here the
-// sphere whose radius is nearest to the camera's distance (by ratio) gives the view, so that distance, yaw, pitch and
-// roll are right to the store's steps, and only the object's offset from the optical axis is not in it.
+// Views stored from a single radius have the wrong perspective wherever the camera is nearer or farther. Here the
+// sphere whose radius is nearest to the camera's distance (by ratio) gives the view. Distance, yaw, pitch and roll are
+// then right to the steps between stored views; the object's offset from the optical axis is not taken into account.
 class NestedSpheresGenerator : public ViewGenerator {
   public:
     // One sphere for each entry, at least one. Throws std::invalid_argument.

@@ -1,4 +1,4 @@
-#include "raycast/internal/point_splat.hpp"
+#include "raycast/point_splat.hpp"
 
 #include <limits>
 #include <stdexcept>

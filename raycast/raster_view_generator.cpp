@@ -1,6 +1,6 @@
 #include "raycast/raster_view_generator.hpp"
 
-#include "raycast/internal/point_splat.hpp"
+#include "raycast/point_splat.hpp"
 
 namespace nearpose {
 

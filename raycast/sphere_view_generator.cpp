@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "raycast/embree_scene.hpp"
-#include "raycast/internal/point_splat.hpp"
+#include "raycast/point_splat.hpp"
 
 namespace nearpose {
 namespace {

@@ -16,8 +16,8 @@ struct SphereOptions {
 
 // At construction the object is seen from viewpoints spread evenly on a sphere around the centre of its box, each time
 // in the middle of the image and whole. A pose gets the stored view whose direction is nearest to its own, placed
-// rigidly: yaw and pitch choose, roll and distance move. What an offset from the optical axis or closeness hides,
-// uncovers or distorts is not in it.
+// rigidly: yaw and pitch choose the view, roll and distance move it. It does not show what is hidden, uncovered or
+// distorted because the camera is near or the object off the optical axis.
 class SphereViewGenerator : public ViewGenerator {
   public:
     explicit SphereViewGenerator(const Mesh& mesh, const SphereOptions& options = {});

@@ -6,6 +6,7 @@
 
 #include "apps/base/number_text.hpp"
 #include "raycast/embree_view_generator.hpp"
+#include "raycast/symmetry/find_symmetries.hpp"
 
 namespace nearpose::program {
 namespace {

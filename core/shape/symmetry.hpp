@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/base/pose.hpp"
-#include "core/view_generator.hpp"
 
 namespace nearpose {
 
@@ -25,12 +24,6 @@ struct Symmetries {
 
     bool empty() const { return discrete.empty() && continuous.empty(); }
 };
-
-// Looks for them in views of the model from all around. `resolution_m` is what the sensor can tell apart: surfaces that
-// lie closer count as the same, and so do details narrower than that. The views must be exact (ray casting); those of
-// rasterised samples have holes, which are no symmetry. Throws std::invalid_argument where `resolution_m` is not
-// positive.
-Symmetries find_symmetries(const ViewGenerator& views, double resolution_m);
 
 // The turn about an axis: object_from_object.
 Pose turn_about(const AxisOfRevolution& axis, double angle_rad);

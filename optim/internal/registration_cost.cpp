@@ -11,9 +11,9 @@ using Lanes = NormalisedPairs::Lanes;
 using Lanes3 = NormalisedPairs::Lanes3;
 using Lanes6 = Eigen::Array<double, NormalisedPairs::kLanes, 6>;
 
-// Of a loss rho at s. With the robust residual e * sqrt(rho / s), its derivative is (f I + (rho' / f - f) / s e e^T)
-// de, f = sqrt(rho / s). Hence, for the sums: across e the weight of J^T J is rho / s, along e it is `along`, and the
-// gradient is rho' J^T e. No root is taken.
+// A loss rho and its derivative at the squared residual s = |e|^2, of four pairs. The robust residual is f e with
+// f = sqrt(rho / s), and its derivative (f I + (rho' / f - f) / s e e^T) de. In the sums this gives J^T J the weight
+// rho / s across e and `along` along e, and the gradient rho' J^T e; no root has to be taken.
 struct LossLanes {
     Lanes rho_over_s = Lanes::Ones();
     Lanes rho_derivative = Lanes::Ones();
@@ -89,7 +89,7 @@ inline Lanes3 measured_in_object(const NormalisedPairs::Block& block, const Eige
 
 // e = n . (p - T^-1 q) / sigma, which is (R n) . (T p - q) / sigma. A right perturbation (w, v) of T moves T^-1 q by
 // -(w x T^-1 q + v), so de = (T^-1 q x n) . w + n . v.
-NormalEquations plane_equations(const NormalisedPairs& pairs, const Pose& pose, RobustLoss loss, double scale_sigmas) {
+RegistrationEquations plane_equations(const NormalisedPairs& pairs, const Pose& pose, const RobustResidual& residual) {
     const Eigen::Matrix3d rotation = pose.rotation_matrix();
     OuterProducts products;
     Lanes6 gradient = Lanes6::Zero();
@@ -101,7 +101,7 @@ NormalEquations plane_equations(const NormalisedPairs& pairs, const Pose& pose, 
         const Lanes e =
             difference.col(0) * normal.col(0) + difference.col(1) * normal.col(1) + difference.col(2) * normal.col(2);
         const Lanes s = e.square();
-        const LossLanes rho = loss_lanes(loss, scale_sigmas, s);
+        const LossLanes rho = loss_lanes(residual.loss, residual.loss_scale_sigmas, s);
         Lanes6 row;
         row.leftCols<3>() = cross(measured, normal);
         row.rightCols<3>() = normal;
@@ -129,7 +129,7 @@ Matrix6d turns_and_shifts(const Lanes (&moments)[10]) {
 
 // e = (T p - q) / sigma with J = R (-[p]x, I) / sigma. R drops out of J^T J, and of J^T e if e is turned into the
 // object's frame, d = p - T^-1 q.
-NormalEquations point_equations(const NormalisedPairs& pairs, const Pose& pose, RobustLoss loss, double scale_sigmas) {
+RegistrationEquations point_equations(const NormalisedPairs& pairs, const Pose& pose, const RobustResidual& residual) {
     const Eigen::Matrix3d rotation = pose.rotation_matrix();
     OuterProducts products;  // what a loss takes away along e
     Lanes moments[10];       // sums of weight * (1, p) (1, p)^T
@@ -141,7 +141,7 @@ NormalEquations point_equations(const NormalisedPairs& pairs, const Pose& pose, 
         Lanes3 e = p - measured_in_object(block, rotation, pose.translation);
         for (int i = 0; i < 3; ++i) e.col(i) *= block.weight;
         const Lanes s = e.square().rowwise().sum();
-        const LossLanes rho = loss_lanes(loss, scale_sigmas, s);
+        const LossLanes rho = loss_lanes(residual.loss, residual.loss_scale_sigmas, s);
         Lanes6 jte;  // of each pair
         jte.leftCols<3>() = cross(p, e);
         jte.rightCols<3>() = e;
@@ -155,19 +155,19 @@ NormalEquations point_equations(const NormalisedPairs& pairs, const Pose& pose, 
         }
         for (int i = 0; i < 3; ++i) moments[6 + i] += across * p.col(i);
         moments[9] += across;
-        if (loss != RobustLoss::kNone) {
+        if (residual.loss != RobustLoss::kNone) {
             products.add(jte, (s > 0.0).select((rho.along() - rho.rho_over_s) / s.max(1e-300), 0.0));
         }
         for (int i = 0; i < 6; ++i) gradient.col(i) += rho.rho_derivative * jte.col(i);
         cost += rho.rho_over_s * s;
     }
-    NormalEquations sums{products.total(), gradient.colwise().sum().transpose().matrix(), cost.sum()};
+    RegistrationEquations sums{products.total(), gradient.colwise().sum().transpose().matrix(), cost.sum()};
     sums.jtj += turns_and_shifts(moments);
     return sums;
 }
 
 // Six rows J' and seven residuals r', the seventh with a zero row, with the given sums.
-Matrix6d factorise(const NormalEquations& sums, Eigen::Map<Eigen::Matrix<double, 7, 1>>& r) {
+Matrix6d factorise(const RegistrationEquations& sums, Eigen::Map<Eigen::Matrix<double, 7, 1>>& r) {
     // J^T J = P^T L D L^T P, hence the rows D^1/2 L^T P. Where the pairs leave a direction open, D ends in zero (or the
     // rounding of it), and that row stays zero.
     const Eigen::LDLT<Matrix6d> factors(sums.jtj);
@@ -191,19 +191,19 @@ Matrix6d factorise(const NormalEquations& sums, Eigen::Map<Eigen::Matrix<double,
 
 }  // namespace
 
-NormalEquations normal_equations(const NormalisedPairs& pairs, const Pose& normalised_pose, ResidualKind kind,
-                                 RobustLoss loss, double loss_scale_sigmas) {
-    return kind == ResidualKind::kPointToPlane ? plane_equations(pairs, normalised_pose, loss, loss_scale_sigmas)
-                                               : point_equations(pairs, normalised_pose, loss, loss_scale_sigmas);
+RegistrationEquations registration_equations(const NormalisedPairs& pairs, const Pose& normalised_pose,
+                                             const RobustResidual& residual) {
+    return residual.kind == ResidualKind::kPointToPlane ? plane_equations(pairs, normalised_pose, residual)
+                                                        : point_equations(pairs, normalised_pose, residual);
 }
 
-bool is_finite(const NormalEquations& sums) {
+bool is_finite(const RegistrationEquations& sums) {
     return std::isfinite(sums.rtr) && sums.jtr.allFinite() && sums.jtj.allFinite();
 }
 
-RegistrationCost::RegistrationCost(const NormalisedPairs& pairs, ResidualKind kind, RobustLoss loss,
-                                   double loss_scale_sigmas, const Pose& normalised_start)
-    : pairs_(pairs), kind_(kind), loss_(loss), loss_scale_sigmas_(loss_scale_sigmas), start_(normalised_start) {
+RegistrationCost::RegistrationCost(const NormalisedPairs& pairs, const RobustResidual& residual,
+                                   const Pose& normalised_start)
+    : pairs_(pairs), residual_(residual), start_(normalised_start) {
     latest_parameters_.setConstant(std::numeric_limits<double>::quiet_NaN());  // equal to none
 }
 
@@ -215,9 +215,9 @@ Pose RegistrationCost::pose_at(const double* turn_and_shift) const {
     return {rotation, start_.translation + start_.rotation * x.tail<3>()};
 }
 
-const NormalEquations& RegistrationCost::sums_at(const Twist& turn_and_shift) const {
+const RegistrationEquations& RegistrationCost::sums_at(const Twist& turn_and_shift) const {
     if (turn_and_shift != latest_parameters_) {
-        latest_ = normal_equations(pairs_, pose_at(turn_and_shift.data()), kind_, loss_, loss_scale_sigmas_);
+        latest_ = registration_equations(pairs_, pose_at(turn_and_shift.data()), residual_);
         latest_parameters_ = turn_and_shift;
     }
     return latest_;
@@ -240,7 +240,7 @@ Eigen::Matrix3d right_jacobian(const Eigen::Vector3d& w) {
 bool RegistrationCost::operator()(const double* turn_and_shift, double* residuals, double* jacobian) const {
     const Eigen::Map<const Twist> x(turn_and_shift);
     Eigen::Map<Eigen::Matrix<double, NUM_RESIDUALS, 1>> r(residuals);
-    const NormalEquations& sums = sums_at(x);
+    const RegistrationEquations& sums = sums_at(x);
     if (!is_finite(sums)) {
         constexpr double kUnreachable = 1e100;
         r.setConstant(kUnreachable);

@@ -51,20 +51,31 @@ mapfile -t core < <(files core)
 mapfile -t raycast < <(files raycast)
 mapfile -t optim < <(files optim)
 mapfile -t apps < <(files apps)
-mapfile -t headers < <(find core raycast optim -maxdepth 1 -name '*.hpp')
+mapfile -t headers < <(find core raycast optim -name '*.hpp' -not -path '*/internal/*')  # those that are installed
 [[ ${#core[@]} -gt 10 && ${#headers[@]} -gt 10 ]] || { echo "no sources found"; exit 1; }
 
 forbid 'raycast/|optim/|apps/' 'core looks outside' "${core[@]}"
 forbid 'optim/|apps/' 'raycast looks at optim or apps' "${raycast[@]}"
+forbid 'raycast/(embree|raster|sphere|nested|depth_renderer|surface|symmetry)' \
+    'mesh files look at what casts rays' $(files raycast/mesh_files)
+forbid 'raycast/(mesh|embree|raster|sphere|nested|depth_renderer|surface)' \
+    'the search for symmetries sees the part through the port of views alone' $(files raycast/symmetry)
+forbid 'assimp/' 'assimp outside assimp_reader.cpp' $(printf '%s\n' "${raycast[@]}" | grep -vx raycast/mesh_files/assimp_reader.cpp)
+forbid 'embree[34]/' 'Embree outside embree_scene.cpp' $(printf '%s\n' "${raycast[@]}" | grep -vx raycast/embree_scene.cpp)
 forbid 'raycast/|apps/' 'optim looks at raycast or apps' "${optim[@]}"
 forbid 'tests/' 'the product looks at its tests' "${core[@]}" "${raycast[@]}" "${optim[@]}" "${apps[@]}"
 forbid 'embree|assimp|flann|ceres/|omp\.h' 'a header that is installed includes a heavy library' "${headers[@]}"
 forbid 'embree|assimp|ceres/' 'a heavy library outside its folder' "${core[@]}" "${apps[@]}"
-forbid 'optim/|raycast/embree|core/(correspondence|estimator|fine_fit|gradient_step|likelihood|observation|point_index)' \
+forbid 'optim/|raycast/embree|core/(estimator|update|fit|evidence|observation|filter/(association|gradient_step)|base/point_index)' \
     'a naive baseline uses what is compared with it' $(files tests/bench/naive)
 forbid 'ceres/|flann|omp\.h' 'a heavy library outside its folder' "${raycast[@]}"
 forbid 'embree|assimp|flann|omp\.h' 'a heavy library outside its folder' "${optim[@]}"
 forbid 'flann|omp\.h' 'a heavy library outside its folder' "${apps[@]}"
+
+# Values; the ports; what is measured; shapes, evidence, filter, search and fit, each on those before it; the method and
+# its options; the stages of an update; the estimator.
+check_room_order core base 'view_generator correspondences' pose_solver observation shape evidence filter search fit \
+    method options result update estimator
 
 # Rooms that several commands share, then one room a command, then the list of the commands.
 check_room_order apps base data_set part_model depth_sensor scenes error_measures tables pictures runs view_quality \
@@ -75,5 +86,5 @@ for library in embree assimp flann omp; do
     [[ $count -le 2 ]] || { echo "$library is included by $count files"; breaches=1; }
 done
 pragmas=$(grep -lE '^[[:space:]]*#pragma omp' "${core[@]}" "${raycast[@]}" "${optim[@]}" "${apps[@]}")
-[[ $pragmas == core/parallel.cpp ]] || { echo "OpenMP outside core/parallel.cpp: $pragmas"; breaches=1; }
+[[ $pragmas == core/base/parallel.cpp ]] || { echo "OpenMP outside core/base/parallel.cpp: $pragmas"; breaches=1; }
 exit $breaches

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "optim/ceres_pose_solver.hpp"
-#include "pairs_of_shapes.hpp"
+#include "tests/optim/pairs_of_shapes.hpp"
 
 namespace nearpose {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <tuple>
 
-#include "pairs_of_shapes.hpp"
+#include "tests/optim/pairs_of_shapes.hpp"
 
 namespace nearpose {
 namespace {
@@ -55,7 +55,7 @@ class RegistrationCostOf : public testing::TestWithParam<std::tuple<ResidualKind
     void expect_equal_to_rows_at(const Twist& x, const Correspondences& correspondences, const Pose& pose) const {
         const NormalisedPairs pairs(correspondences, kind);
         ASSERT_TRUE(pairs.usable);
-        RegistrationCost cost(pairs, kind, loss, scale, pairs.normalised(pose));
+        RegistrationCost cost(pairs, {kind, loss, scale}, pairs.normalised(pose));
         const double stay = 0.25 * pairs.total_squared_weight;
         cost.set_stay(stay);
         const auto rows = [&](const Twist& parameters) {
@@ -112,7 +112,7 @@ TEST_P(RegistrationCostOf, EqualsTheRowsFarFromTheObjectsOrigin) {
 TEST_P(RegistrationCostOf, RefusesACostThatIsNotFinite) {
     const Correspondences correspondences = ellipsoid_pairs(20, exact_pose());
     const NormalisedPairs pairs(correspondences, kind);
-    const RegistrationCost cost(pairs, kind, loss, scale, exact_pose());
+    const RegistrationCost cost(pairs, {kind, loss, scale}, exact_pose());
     const Twist x = make_twist(0.0, 0.0, 0.0, 0.0, 0.0, 1e200);
     Eigen::Matrix<double, 13, 1> residuals;
     EXPECT_FALSE(cost(x.data(), residuals.data(), nullptr));

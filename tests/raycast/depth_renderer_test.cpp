@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "shapes.hpp"
+#include "tests/raycast/shapes.hpp"
 
 namespace nearpose::test {
 namespace {

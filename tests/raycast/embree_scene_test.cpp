@@ -4,7 +4,7 @@
 #include <limits>
 #include <thread>
 
-#include "shapes.hpp"
+#include "tests/raycast/shapes.hpp"
 
 namespace nearpose::test {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "shapes.hpp"
+#include "tests/raycast/shapes.hpp"
 
 namespace nearpose::test {
 namespace {

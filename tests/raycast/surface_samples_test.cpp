@@ -1,6 +1,6 @@
 #include "raycast/surface_samples.hpp"
 
-#include "shapes.hpp"
+#include "tests/raycast/shapes.hpp"
 
 namespace nearpose::test {
 namespace {

@@ -6,7 +6,7 @@
 #include "raycast/embree_view_generator.hpp"
 #include "raycast/raster_view_generator.hpp"
 #include "raycast/sphere_view_generator.hpp"
-#include "shapes.hpp"
+#include "tests/raycast/shapes.hpp"
 
 namespace nearpose::test {
 namespace {

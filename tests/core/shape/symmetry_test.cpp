@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/base/random.hpp"
-#include "tests/core/analytic_part.hpp"
 
 namespace nearpose {
 namespace {
@@ -97,19 +96,6 @@ TEST(Symmetry, TheClosedFormOfAnAxisBeatsASearchOverItsTurns) {
         const Pose turned = pose * turn_about(symmetries.continuous[0], i * M_PI / 360.0);
         EXPECT_LE(angle, angle_between(turned.rotation, reference.rotation) + 1e-9);
     }
-}
-
-TEST(Symmetry, FoundThroughThePortOfViews) {
-    const auto cube = test::BoxViewGenerator({{{-0.02, -0.02, -0.02}, {0.02, 0.02, 0.02}}});
-    EXPECT_EQ(find_symmetries(cube, 5e-4).discrete.size(), 23U);
-    // Two equal towers at opposite corners: a half turn.
-    const auto towers = test::BoxViewGenerator({{{-0.10, -0.07, -0.03}, {0.10, 0.07, 0.03}},
-                                                {{-0.09, -0.06, 0.03}, {-0.03, 0.01, 0.09}},
-                                                {{0.03, -0.01, 0.03}, {0.09, 0.06, 0.09}}});
-    const Symmetries found = find_symmetries(towers, 5e-4);
-    ASSERT_EQ(found.discrete.size(), 1U);
-    EXPECT_LT((found.discrete[0] * Eigen::Vector3d(0.1, 0.07, 0) - Eigen::Vector3d(-0.1, -0.07, 0)).norm(), 1e-3);
-    EXPECT_TRUE(find_symmetries(test::BoxViewGenerator(test::asymmetric_part()), 5e-4).empty());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "core/symmetry_axes.hpp"
+#include "raycast/symmetry/symmetry_axes.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -36,11 +36,9 @@ SurfaceMoments moments_of(const ViewsAround& around) {
     return result;
 }
 
-// Directions that much of the surface faces, most faced first.
-std::vector<Eigen::Vector3d> faced_directions(const ViewsAround& around) {
-    constexpr double kOneFace = 0.996;    // cosine: 5 degrees
-    constexpr double kLeastShare = 0.02;  // of the surface
-    constexpr std::size_t kMostFaces = 200, kKept = 8;
+// Outward directions of the model's large faces, the largest first.
+std::vector<Eigen::Vector3d> face_directions(const ViewsAround& around, const CandidateAxisOptions& options) {
+    constexpr std::size_t kMaxDistinct = 200;  // a curved surface has no end of them
     struct Face {
         Eigen::Vector3f direction;
         int hits;
@@ -48,38 +46,42 @@ std::vector<Eigen::Vector3d> faced_directions(const ViewsAround& around) {
     std::vector<Face> faces;
     for_each_hit(around, [&](const auto&, const Eigen::Vector3f& normal) {
         for (Face& face : faces) {
-            if (face.direction.dot(normal) < kOneFace) continue;
+            if (face.direction.dot(normal) < options.same_face) continue;
             ++face.hits;
             return;
         }
-        if (faces.size() < kMostFaces) faces.push_back({normal, 1});
+        if (faces.size() < kMaxDistinct) faces.push_back({normal, 1});
     });
     std::stable_sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) { return a.hits > b.hits; });
+    const auto max_faces = static_cast<std::size_t>(options.max_faces);
     std::vector<Eigen::Vector3d> directions;
     for (const Face& face : faces)
-        if (directions.size() < kKept && face.hits > kLeastShare * around.hits)
+        if (directions.size() < max_faces && face.hits > options.min_face_share * around.hits)
             directions.push_back(face.direction.cast<double>());
     return directions;
 }
 
-void add_direction(std::vector<Eigen::Vector3d>& directions, const Eigen::Vector3d& direction) {
-    constexpr double kSameAxis = 0.999;  // cosine: 2.5 degrees, which refinement makes up for
+void add_direction(std::vector<Eigen::Vector3d>& directions, const Eigen::Vector3d& direction, double same_direction) {
     if (direction.norm() < 0.1) return;
     const Eigen::Vector3d unit = direction.normalized();
-    const auto same = [&](const Eigen::Vector3d& other) { return std::abs(other.dot(unit)) > kSameAxis; };
+    const auto same = [&](const Eigen::Vector3d& other) { return std::abs(other.dot(unit)) > same_direction; };
     if (std::none_of(directions.begin(), directions.end(), same)) directions.push_back(unit);
 }
 
 // An axis of a polyhedron passes through the middle of a face, an edge (the mean of two faces' directions) or a corner;
 // that of a prism is across two of its sides.
-void add_polyhedral(std::vector<Eigen::Vector3d>& directions, const ViewsAround& around) {
-    const std::vector<Eigen::Vector3d> faces = faced_directions(around);
-    for (const Eigen::Vector3d& face : faces) add_direction(directions, face);
+void add_polyhedral(std::vector<Eigen::Vector3d>& directions, const ViewsAround& around,
+                    const CandidateAxisOptions& options) {
+    const std::vector<Eigen::Vector3d> faces = face_directions(around, options);
+    const auto add = [&](const Eigen::Vector3d& direction) {
+        add_direction(directions, direction, options.same_direction);
+    };
+    for (const Eigen::Vector3d& face : faces) add(face);
     for (std::size_t i = 0; i < faces.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j) {
-            add_direction(directions, faces[i] + faces[j]);
-            add_direction(directions, faces[i] - faces[j]);
-            add_direction(directions, faces[i].cross(faces[j]));
+            add(faces[i] + faces[j]);
+            add(faces[i] - faces[j]);
+            add(faces[i].cross(faces[j]));
         }
     }
 }
@@ -90,28 +92,28 @@ double distance_from(const AxisOfRevolution& axis, const Eigen::Vector3d& point)
 
 }  // namespace
 
-CandidateAxes candidate_axes(const ViewsAround& around) {
-    constexpr double kAlike = 0.06;   // relative difference of two moments; sampling makes 0.02 of it
-    constexpr double kApart = 0.015;  // diameters between two axes; refinement makes up for less
+CandidateAxes candidate_axes(const ViewsAround& around, const CandidateAxisOptions& options) {
     const SurfaceMoments surface = moments_of(around);
     const ModelExtent& extent = around.views->extent();
-    const double alike = kAlike * surface.moments[2];
-    const bool low_alike = surface.moments[1] - surface.moments[0] < alike;
-    const bool high_alike = surface.moments[2] - surface.moments[1] < alike;
+    const double tolerance = options.equal_moments * surface.moments[2];
+    const bool low_equal = surface.moments[1] - surface.moments[0] < tolerance;
+    const bool high_equal = surface.moments[2] - surface.moments[1] < tolerance;
 
     std::vector<Eigen::Vector3d> directions;
-    for (int i = 0; i < 3; ++i) add_direction(directions, Eigen::Vector3d::Unit(i));
-    for (int i = 0; i < 3; ++i) add_direction(directions, surface.axes.col(i));
-    if (low_alike && high_alike) add_polyhedral(directions, around);
+    for (int i = 0; i < 3; ++i) add_direction(directions, Eigen::Vector3d::Unit(i), options.same_direction);
+    for (int i = 0; i < 3; ++i) add_direction(directions, surface.axes.col(i), options.same_direction);
+    if (low_equal && high_equal) add_polyhedral(directions, around, options);
 
     CandidateAxes result;
     for (const Eigen::Vector3d& direction : directions) {
         result.axes.push_back({direction, surface.centroid});
-        if (distance_from(result.axes.back(), extent.centre_in_object()) > kApart * extent.diameter_m())
+        if (distance_from(result.axes.back(), extent.centre_in_object()) >
+            options.distinct_axes_diameters * extent.diameter_m())
             result.axes.push_back({direction, extent.centre_in_object()});
     }
-    // Two equal moments leave the two axes across the third open.
-    if (low_alike != high_alike) result.spindles.push_back({surface.axes.col(low_alike ? 2 : 0), surface.centroid});
+    // Two equal moments do not determine the directions of their axes: they may be any across the third.
+    if (low_equal != high_equal)
+        result.dihedral_axes.push_back({surface.axes.col(low_equal ? 2 : 0), surface.centroid});
     return result;
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "raycast/internal/json_outline.hpp"
+#include "raycast/mesh_files/json_outline.hpp"
 #include "raycast/mesh_loader.hpp"
 
 namespace nearpose {

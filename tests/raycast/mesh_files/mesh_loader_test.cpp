@@ -5,8 +5,8 @@
 
 #include <cstring>
 
-#include "raycast/internal/mesh_files.hpp"
-#include "shapes.hpp"
+#include "raycast/mesh_files/readers.hpp"
+#include "tests/raycast/shapes.hpp"
 
 namespace nearpose::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "raycast/internal/point_cloud.hpp"
+#include "raycast/mesh_files/point_cloud.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

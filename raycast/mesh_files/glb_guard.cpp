@@ -1,7 +1,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "raycast/internal/gltf_guard.hpp"
+#include "raycast/mesh_files/gltf_guard.hpp"
 
 namespace nearpose {
 namespace {

@@ -21,9 +21,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "raycast/internal/gltf_guard.hpp"
-#include "raycast/internal/import_guards.hpp"
-#include "raycast/internal/mesh_files.hpp"
+#include "raycast/mesh_files/gltf_guard.hpp"
+#include "raycast/mesh_files/import_guards.hpp"
+#include "raycast/mesh_files/readers.hpp"
 
 namespace nearpose {
 namespace {

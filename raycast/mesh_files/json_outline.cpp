@@ -1,9 +1,9 @@
-#include "raycast/internal/json_outline.hpp"
+#include "raycast/mesh_files/json_outline.hpp"
 
 #include <stdexcept>
 #include <utility>
 
-#include "raycast/internal/text_scanner.hpp"
+#include "raycast/mesh_files/text_scanner.hpp"
 
 namespace nearpose {
 namespace {

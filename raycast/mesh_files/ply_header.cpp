@@ -1,4 +1,4 @@
-#include "raycast/internal/ply_header.hpp"
+#include "raycast/mesh_files/ply_header.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "raycast/internal/text_scanner.hpp"
+#include "raycast/mesh_files/text_scanner.hpp"
 
 namespace nearpose {
 namespace {

@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "raycast/internal/mesh_files.hpp"
-#include "raycast/internal/ply_header.hpp"
-#include "raycast/internal/text_scanner.hpp"
+#include "raycast/mesh_files/ply_header.hpp"
+#include "raycast/mesh_files/readers.hpp"
+#include "raycast/mesh_files/text_scanner.hpp"
 
 namespace nearpose {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "raycast/mesh_loader.hpp"
-#include "shapes.hpp"
+#include "tests/raycast/shapes.hpp"
 
 namespace nearpose::test {
 namespace {

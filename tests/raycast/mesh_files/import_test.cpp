@@ -2,7 +2,7 @@
 #include <sstream>
 
 #include "raycast/mesh_loader.hpp"
-#include "shapes.hpp"
+#include "tests/raycast/shapes.hpp"
 
 namespace nearpose::test {
 namespace {

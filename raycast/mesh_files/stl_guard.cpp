@@ -2,8 +2,8 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "raycast/internal/import_guards.hpp"
-#include "raycast/internal/text_scanner.hpp"
+#include "raycast/mesh_files/import_guards.hpp"
+#include "raycast/mesh_files/text_scanner.hpp"
 
 namespace nearpose {
 namespace {

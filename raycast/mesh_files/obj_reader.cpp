@@ -3,8 +3,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "raycast/internal/mesh_files.hpp"
-#include "raycast/internal/text_scanner.hpp"
+#include "raycast/mesh_files/readers.hpp"
+#include "raycast/mesh_files/text_scanner.hpp"
 
 namespace nearpose {
 
