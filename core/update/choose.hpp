@@ -14,20 +14,20 @@ struct Choice {
     Mode mode;                      // the chosen one
     bool replaces_tracked = false;  // by another mode
     bool all_refined = true;        // false: the budget left hypotheses out
-    std::vector<Mode> modes;        // all of them, distinct, with weights
-    double score = 0.0;             // of the result, larger is better
+    std::vector<Mode> modes;        // all that were refined, distinct, with weights
+    double score = 0.0;             // for the result, larger is better
 };
 
 // The paper's: the particle with the smallest weight.
 Choice choose_map(const MovedParticles& moved, const Frame& frame);
 
-// The default method's: hypotheses are proposed and refined side by side. The tracked one stays unless another one's
-// present evidence is clearly better: one early wrong choice must not last.
+// The default method's. Hypotheses are proposed and refined side by side. The tracked one stays unless the present
+// image speaks clearly for another; so an early wrong choice does not last.
 Choice choose_mode(const Belief& belief, const MovedParticles& moved, const Situation& situation, const Frame& frame,
                    Ledger& ledger);
 
-// Whether a challenger replaces the tracked mode: its log-odds must exceed the margin, or, where more of it is needed,
-// the evidence of the last accepted pose. `stride` is that of the rays that the log evidences are of [pixels].
+// Whether a challenger replaces the tracked mode. Its log-odds must exceed the margin, and the evidence of the last
+// accepted pose where that is more. `stride` is the spacing of the rays behind both log evidences [pixels].
 bool overturns(double challenger_log_evidence, double tracked_log_evidence, int stride, const Lock& lock,
                const ChoiceOptions& options);
 

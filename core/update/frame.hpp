@@ -27,7 +27,7 @@ struct Frame {
 
     const Method& method() const { return options.method; }
     bool shows_enough() const { return observation.num_candidates() >= options.min_candidates; }
-    // What particles or modes on a ray grid share.
+    // What all particles or modes on one ray grid share.
     StepContext context(const ObservedGrid& observed, const GradientStep& gradient_step) const;
 };
 

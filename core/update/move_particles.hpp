@@ -1,4 +1,4 @@
-// The filter's step: each particle is pulled onto the image and weighed (the paper's gradient step and likelihood).
+// The filter's step: each particle is moved towards the image and weighed (the paper's gradient step and likelihood).
 #pragma once
 
 #include <vector>

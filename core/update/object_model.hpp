@@ -15,8 +15,8 @@ namespace nearpose {
 // Made once, with all slow set-up, and never changed; several estimators may share one.
 struct ObjectModel {
     std::shared_ptr<const ViewGenerator> views;
-    std::vector<OrientedPoint> surface_points;  // of a search that lays single points on the image
-    std::optional<PointPairTable> point_pairs;  // of a search by pairs of points
+    std::vector<OrientedPoint> surface_points;  // for a search by single points
+    std::optional<PointPairTable> point_pairs;  // for a search by pairs of points
     Symmetries symmetries;
     ModeDistance mode_distance;  // poses closer than that are one mode
 

@@ -1,23 +1,27 @@
 // In which phase the filter is, and what a frame in that phase is worth.
 //
-//                  agreement too low, or contradicted by the image
-//        +----------------------------------------------------------------+
-//        v                                                                |
-//    searching --> acquiring --> confirming --> tracking -----------------+
-//    (where may     (which mode    (one is        (one mode held for some
-//     it be?)        is right?)     verified)      frames, no alternative left)
-//                       ^             |  ^            |
-//                       +-------------+  +------------+
-//                       no longer verified   the image disagrees with the predicted pose
+//      +------------------------ searching: where may it be? <------------------------+
+//      |                                                                              |
+//      | a pose was found                              the image contradicts the pose, |
+//      v                                               or agrees too little with it    |
+//    acquiring: which mode is right?  -------------------------------------------------+
+//      |   ^                                                                          |
+//      |   | no longer verified, or an alternative is left                            |
+//      v   |                                                                          |
+//    confirming: a pose is verified  --------------------------------------------------+
+//      |   ^                                                                          |
+//      |   | replaced, or the image disagrees with the predicted pose                 |
+//      v   |                                                                          |
+//    tracking: not replaced for some frames  ------------------------------------------+
 //
-// Every frame decides anew from the record of the frames before: no phase is left by force.
+// Every frame decides anew from the record of the frames before: phase_of reads the picture from the top.
 #pragma once
-
-#include "core/evidence/verdict.hpp"
-#include "core/method.hpp"
 
 #include <cstdint>
 #include <optional>
+
+#include "core/evidence/verdict.hpp"
+#include "core/method.hpp"
 
 namespace nearpose {
 

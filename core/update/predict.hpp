@@ -10,8 +10,8 @@ namespace nearpose {
 // The belief of the update before, carried to this frame.
 Belief predict(const Belief& before, const Frame& frame, Ledger& ledger);
 
-// As many particles as describe the posterior (KLD sampling, Fox 2003): its cells are the modes of the particles that
-// are not far less likely than the best. All of them until the track is confirmed.
+// As many particles as describe the posterior (KLD sampling, Fox 2003). Its cells are the modes of those particles that
+// are not far less likely than the best. All particles until the track is confirmed.
 int particles_wanted(const Belief& belief, const Frame& frame);
 
 }  // namespace nearpose

@@ -8,8 +8,8 @@
 
 namespace nearpose {
 
-// Where the object may be: on the segmented pixels; where nothing is segmented around a pose (camera_from_object), or,
-// without one, anywhere that something was measured. With a margin, so that model beyond what is seen can show.
+// Where the object may be: around the segmented pixels. Where nothing is segmented: around a pose (camera_from_object),
+// or without one around all that was measured. With a margin, so that model beyond what is seen can show.
 PixelGrid ray_grid(const Frame& frame, const std::optional<Pose>& around, int max_rays);
 
 // The part of the image in which the model lies at a pose, without a margin; where it comes close to the camera, all

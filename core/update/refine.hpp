@@ -1,4 +1,4 @@
-// Hypotheses on their way to the bottom, and the predicted pose as it is.
+// Refinement of hypotheses, and the gate of the predicted pose.
 #pragma once
 
 #include <optional>
@@ -9,19 +9,19 @@
 
 namespace nearpose {
 
-// Refines modes on many rays, side by side. A single mode whose prediction the image agrees with is taken as it is: the
-// joint fit needs no rounds before it.
+// Refines modes on many rays, side by side. Where the image agrees with the predicted pose and it is the only mode, it
+// is taken as it is: the joint fit needs no rounds before it.
 std::vector<Mode> refine(const std::vector<Mode>& modes, const Situation& situation, const Frame& frame,
                          Ledger& ledger);
 
 Mode mode_of(const MovedParticle& refined);
 
-// What the image says of the predicted pose without moving it.
+// Weighs the predicted pose without moving it.
 MovedParticle evaluate_prediction(const Pose& predicted, const Situation& situation, const Frame& frame,
                                   Ledger& ledger);
 
-// Compares the image with the predicted pose, where a verified pose was carried by the measured motion of the arm. Sets
-// the situation's prediction where the image agrees, and its phase and plan.
+// Compares the image with the predicted pose, where an accepted pose was carried by the arm's measured motion. Where
+// the image agrees, the prediction enters the situation; phase and plan follow.
 void gate_prediction(Situation& situation, const Belief& predicted, const Frame& frame, Ledger& ledger);
 
 }  // namespace nearpose

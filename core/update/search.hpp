@@ -6,8 +6,8 @@
 
 namespace nearpose {
 
-// Poses drawn from what is seen, the best of which become the particles. Sets the situation's surfels and best
-// hypotheses from pairs.
+// Draws poses from what is seen; the best become the particles. Sets the situation's surfels and its best hypotheses
+// from pairs.
 ParticleSet search(Situation& situation, const Frame& frame, Ledger& ledger);
 
 }  // namespace nearpose

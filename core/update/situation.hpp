@@ -16,7 +16,7 @@ namespace nearpose {
 struct Window {
     bool everywhere = false;     // the object may be anywhere: during a search
     std::optional<Pose> around;  // else around this pose (camera_from_object), where nothing is segmented
-    // Of a search: how much each place of the image says about the pose. None: all places matches.
+    // How much each place of the image says about the pose, for a search. None: all places say the same.
     std::shared_ptr<const SurfelGrid> surfels;
 };
 
@@ -24,7 +24,7 @@ struct Situation {
     Phase phase = Phase::kSearching;
     Plan plan;  // what the phase is worth
     Window window;
-    std::vector<Pose> best_from_pairs;        // of a search where nothing is segmented: its best hypotheses, best first
+    std::vector<Pose> best_from_pairs;        // a search's best hypotheses, best first, where nothing is segmented
     std::optional<MovedParticle> prediction;  // the predicted pose, where the image agrees with it
 
     bool searching() const { return phase == Phase::kSearching; }
@@ -32,8 +32,8 @@ struct Situation {
 
 Situation situation_of(const Belief& predicted, const Method& method);
 
-// From a search on until the track is confirmed again: where the lost pose is by the arm's motion. The object may only
-// have been hidden for a while.
+// Where the lost pose is by the arm's motion, from a search on until the track is confirmed again: the object may only
+// have been occluded for a while.
 std::optional<Pose> pose_before_loss(const Belief& predicted, Phase phase, const Method& method);
 
 }  // namespace nearpose
