@@ -1,18 +1,18 @@
 // In which phase the filter is, and what a frame in that phase is worth.
 //
-//      +------------------------ searching: where may it be? <------------------------+
-//      |                                                                              |
-//      | a pose was found                              the image contradicts the pose, |
-//      v                                               or agrees too little with it    |
-//    acquiring: which mode is right?  -------------------------------------------------+
-//      |   ^                                                                          |
-//      |   | no longer verified, or an alternative is left                            |
-//      v   |                                                                          |
-//    confirming: a pose is verified  --------------------------------------------------+
-//      |   ^                                                                          |
-//      |   | replaced, or the image disagrees with the predicted pose                 |
-//      v   |                                                                          |
-//    tracking: not replaced for some frames  ------------------------------------------+
+//    searching: where may it be? <---------------------------------+
+//      |                                                           |
+//      | a pose was found                                          |  the image contradicts the pose,
+//      v                                                           |  or agrees too little with it
+//    acquiring: which mode is right? ------------------------------+
+//      |   ^                                                       |
+//      |   | not verified any more, or an alternative is left      |
+//      v   |                                                       |
+//    confirming: a pose is verified -------------------------------+
+//      |   ^                                                       |
+//      |   | replaced, or the image disagrees with the prediction  |
+//      v   |                                                       |
+//    tracking: not replaced for some frames -----------------------+
 //
 // Every frame decides anew from the record of the frames before: phase_of reads the picture from the top.
 #pragma once
