@@ -35,7 +35,7 @@ TEST(ClosestPointGrid, NearestIsNearAtTheSurfaceAndNothingFarFromIt) {
     for (const Eigen::Vector3f& point : view.points_in_object) {
         const OrientedPoint* nearest = field().nearest(point);
         ASSERT_NE(nearest, nullptr);
-        EXPECT_LT((nearest->point_in_object - point).norm(), field().reach_m());
+        EXPECT_LT((nearest->point - point).norm(), field().reach_m());
     }
     EXPECT_EQ(field().nearest(Eigen::Vector3f(0.0F, 0.0F, 1.0F)), nullptr);
     EXPECT_EQ(field().nearest(Eigen::Vector3f(-10.0F, 0.0F, 0.0F)), nullptr);

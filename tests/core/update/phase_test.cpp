@@ -46,7 +46,7 @@ TEST(Phase, FollowsFromTheRecordOfTheFramesBefore) {
          Phase::kConfirming},
         {"replaced just now, and not verified", changed([](Lock& l) { l.frames_unreplaced = 4, l.verified = false; }),
          true, Phase::kAcquiring},
-        {"an alternative is left", changed([](Lock& l) { l.alternatives_weight = 0.01; }), true, Phase::kAcquiring},
+        {"an alternative is left", changed([](Lock& l) { l.alternatives_weight = 0.02; }), true, Phase::kAcquiring},
         {"an alternative is left that fewer rays still tell apart, so few were cast before",
          changed([](Lock& l) { l.alternatives_weight = 0.01, l.phase = Phase::kConfirming; }), true,
          Phase::kConfirming},
