@@ -30,17 +30,18 @@ done
 for program in "${programs[@]}"; do [[ -x $program ]] || fail "$program is no program"; done
 old=$(readlink -f "${programs[0]}"); new=$(readlink -f "${programs[1]}")
 data=$(readlink -m "$data"); keep=$(readlink -m "$keep")
-before=$keep/old-$(sha256sum "$old" | cut -c1-12); after=$keep/new
+before=$keep/old-$(sha256sum "$old" | cut -c1-12); after=$keep/new-$(sha256sum "$new" | cut -c1-12)
 mkdir -p "$before" "$after"
 
-# The runs: a name each, and the program's arguments as one quoted line. @OUT stands for the folder of a run's outputs.
+# The runs: a name each, and the program's arguments as one quoted line. @OUT stands for the folder of a run's outputs,
+# @JOBS for the number of threads where results cannot depend on it.
 names=(); declare -A command_of
 add() { names+=("$1"); command_of[$1]=$(printf '%q ' "${@:2}"); }
 recording() { add "simulate_$1" simulate --seed 1 --force --threads 1 --out @OUT "${@:2}"; }
 recorded() { echo "$before/simulate_$1/out"; }  # OLD's run is what all others are given
 estimate_in() { add "$1" estimate --scene "$2/test/000001" --models "$2/models" --run @OUT "${@:3}"; }
 estimate() { estimate_in "$1" "$(recorded "$2")" "${@:3}"; }
-experiment() { add "$1" experiment "$repository/$2" --out @OUT --threads "$jobs" "${@:3}"; }
+experiment() { add "$1" experiment "$repository/$2" --out @OUT --threads @JOBS "${@:3}"; }
 
 recording piston --scenario piston --frames 10
 recording bracket --scenario sweep --frames 5 --part bracket
@@ -98,7 +99,7 @@ bits_of() {
 }
 # perform PROGRAM FOLDER NAME: FOLDER/NAME/out as the program writes it, FOLDER/NAME/bits what is compared.
 perform() {
-    local program=$1 folder=$2/$3 command=${command_of[$3]} status=0
+    local program=$1 folder=$2/$3 command=${command_of[$3]//@JOBS/$jobs} status=0
     rm -rf "$folder"
     mkdir -p "$folder/bits"
     [[ $command == simulate* ]] || mkdir "$folder/out"
@@ -116,7 +117,7 @@ perform() {
 }
 # What a run depends on besides the program and the recordings, which are of OLD.
 key_of() {
-    echo "${command_of[$1]}"
+    echo "${command_of[$1]//"$repository"/}"
     local file=${command_of[$1]#experiment }
     [[ $file == "${command_of[$1]}" ]] || sha256sum <"${file%% *}"
 }
