@@ -2,7 +2,7 @@
 # Do two builds of the program behave the same, to the bit? Runs both on the same inputs and compares the SHA-256 of all
 # that they write, without what is measured time, the version and the paths of the outputs. A row a run; exit 1 where any
 # differs.
-# usage: tests/replay/same_bits.sh OLD NEW [--quick] [--keep DIR] [--data DIR] [--jobs N] [--only PATTERN]
+# usage: tests/replay/same_bits.sh OLD [NEW] [--quick] [--keep DIR] [--data DIR] [--jobs N] [--only PATTERN]
 #   OLD, NEW   programs (build/release/apps/nearpose); OLD alone records the simulated inputs
 #   --quick    short recordings and tests/replay/odd.json alone; else also small.json, a seed of each row of accuracy.json
 #              and the recorded sets
@@ -11,7 +11,7 @@
 #   --data     folder of the recorded sets; left out where they are not there [../shared/data]
 #   --jobs     runs side by side [as many as the machine has cores]
 #   --only     runs whose name fits the pattern of the shell ('paper*')
-# With OLD as NEW it shows that the program repeats itself.
+# With OLD as NEW it shows that the program repeats itself; OLD alone only fills the folder for later comparisons.
 set -euo pipefail
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 fail() { echo "same_bits: $*" >&2; exit 2; }
@@ -26,9 +26,9 @@ while [[ $# -gt 0 ]]; do
     esac
     shift
 done
-[[ ${#programs[@]} -eq 2 ]] || fail "two programs are needed: OLD NEW"
+[[ ${#programs[@]} -eq 1 || ${#programs[@]} -eq 2 ]] || fail "two programs are needed: OLD NEW"
 for program in "${programs[@]}"; do [[ -x $program ]] || fail "$program is no program"; done
-old=$(readlink -f "${programs[0]}"); new=$(readlink -f "${programs[1]}")
+old=$(readlink -f "${programs[0]}"); new=$(readlink -f "${programs[1]:-$old}")
 data=$(readlink -m "$data"); keep=$(readlink -m "$keep")
 before=$keep/old-$(sha256sum "$old" | cut -c1-12); after=$keep/new-$(sha256sum "$new" | cut -c1-12)
 mkdir -p "$before" "$after"
@@ -154,6 +154,7 @@ all_of_old "${first[@]}"
 grep -oE '"cam_(R|t)_m2c": *\[[^]]*\]' "$piston/test/000001/scene_gt.json" | head -n 2 | paste -sd, | sed 's/.*/{&}/' >"$before/start.json"
 all_of_old mask  # evaluated by both programs
 all_of_old "${chosen[@]}"
+if [[ ${#programs[@]} -eq 1 ]]; then echo "$before has the outputs of ${#chosen[@]} runs"; exit 0; fi
 all "$new" "$after" "${chosen[@]}"
 
 differing=0
