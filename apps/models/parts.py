@@ -4,15 +4,17 @@
     python3 parts.py NAME OUT.ply            write the mesh of "flange" or "bracket"
     python3 parts.py --check NAME [IN.ply]   verify the mesh (generated, or read from IN.ply)
 
-Files, units and frame are those of engine_block.py, whose contours and solids are used: binary
-little-endian PLY in millimetres, the same bytes on every run, origin at the centre of the bounding
-box, z up.
+Files, units and frame are those of engine_block.py: binary little-endian PLY in millimetres, the
+same bytes on every run, origin at the centre of the bounding box, z up.
 """
 
 import math
 import sys
 
-import engine_block as eb
+from shapes.contours import arc, circle
+from shapes.mesh_checks import CELL, check_solids, depth_map
+from shapes.mesh_file import encode_ply, mesh_of, write_file
+from shapes.solids import Body, Feature, Opening, boss, ccw, through
 
 # ------------------------------------------------------------------------------------------------
 # The flange: turned, with six bolt holes of which one is narrower. But for that hole it looks the
@@ -26,21 +28,21 @@ BOLT_R, ODD_BOLT_R = 6.5, 4.5  # the odd one is the hole on +x
 
 
 def flange_bodies():
-    turned = lambda r: eb.circle(0, 0, r, TURNED_N)
+    turned = lambda r: circle(0, 0, r, TURNED_N)
     bore, seat = turned(24.0), turned(29.0)
     rings = [(0.0, turned(79.0)), (1.0, turned(80.0)), (15.0, turned(80.0)), (16.0, turned(79.0))]
     # The hub tapers to a weld end, whose bore is wider at its mouth; the bore goes on through the
     # raised face below.
-    hub = eb.Feature([(16.0, turned(46.0)), (19.0, turned(42.5)), (30.0, turned(37.0)), (41.5, turned(35.5)),
-                      (43.0, turned(34.0))],
-                     [eb.Feature([(43.0, seat), (37.0, seat), (35.0, bore), (-2.0, bore)], through=True)])
-    top, bottom = [hub], [eb.boss(turned(47.5), 0.0, -2.0, 0.4, [eb.Opening(bore)])]
+    hub = Feature([(16.0, turned(46.0)), (19.0, turned(42.5)), (30.0, turned(37.0)), (41.5, turned(35.5)),
+                   (43.0, turned(34.0))],
+                  [Feature([(43.0, seat), (37.0, seat), (35.0, bore), (-2.0, bore)], through=True)])
+    top, bottom = [hub], [boss(turned(47.5), 0.0, -2.0, 0.4, [Opening(bore)])]
     for k in range(6):
         a = math.radians(60.0 * k)
         r = ODD_BOLT_R if k == 0 else BOLT_R
-        top.append(eb.through(eb.circle(BOLT_CIRCLE_R * math.cos(a), BOLT_CIRCLE_R * math.sin(a), r, BOLT_N),
-                              16.0, 0.0, 0.8))
-    return [eb.Body('flange', 'z', rings, top, bottom)]
+        top.append(through(circle(BOLT_CIRCLE_R * math.cos(a), BOLT_CIRCLE_R * math.sin(a), r, BOLT_N),
+                           16.0, 0.0, 0.8))
+    return [Body('flange', 'z', rings, top, bottom)]
 
 
 # ------------------------------------------------------------------------------------------------
@@ -63,12 +65,12 @@ def flat_sheet():
     lip = [(66, 90), (66, 86), (63, 86), (63, LIP_END_V - 3), (60, LIP_END_V), (24, LIP_END_V),
            (14, LIP_V + 6), (14, 86), (11, 86), (11, 90)]
     outline += lip + [(8, 90), (0, 82)]
-    slot = eb.arc(27, 23, 5, 90, 270, 10) + eb.arc(45, 23, 5, -90, 90, 10)
-    holes = [eb.circle(24, 62, 5.5, 24), eb.circle(58, 68, 4.0, 20), eb.circle(70, 20, 4.0, 20), slot,
-             eb.circle(118, 30, 13.0, 36), eb.circle(122, 66, 3.5, 18),
-             eb.circle(176, 26, 4.5, 20), eb.circle(180, 54, 4.5, 20)]
-    top = [eb.through(loop, SHEET, 0.0) for loop in holes]
-    return eb.Body('bracket', 'z', [(0.0, eb.ccw(outline)), (SHEET, eb.ccw(outline))], top)
+    slot = arc(27, 23, 5, 90, 270, 10) + arc(45, 23, 5, -90, 90, 10)
+    holes = [circle(24, 62, 5.5, 24), circle(58, 68, 4.0, 20), circle(70, 20, 4.0, 20), slot,
+             circle(118, 30, 13.0, 36), circle(122, 66, 3.5, 18),
+             circle(176, 26, 4.5, 20), circle(180, 54, 4.5, 20)]
+    top = [through(loop, SHEET, 0.0) for loop in holes]
+    return Body('bracket', 'z', [(0.0, ccw(outline)), (SHEET, ccw(outline))], top)
 
 
 def cut(tris, axis, level):
@@ -144,11 +146,11 @@ def check(name, data, reference):
         if not ok:
             failures.append(text)
 
-    verts, tris = eb.check_solids(report, data, reference, len(bodies()), num_tris, size)
+    verts, tris = check_solids(report, data, reference, len(bodies()), num_tris, size)
     for view, axis, sign in (('+z', 2, 1), ('-z', 2, -1), ('+y', 1, 1), ('-y', 1, -1), ('+x', 0, 1), ('-x', 0, -1)):
-        cells, backs = eb.depth_map(verts, tris, axis, sign)
+        cells, backs = depth_map(verts, tris, axis, sign)
         report(backs == 0, 'view %s: %.0f cm^2 covered, nearest faces look outward'
-               % (view, len(cells) * eb.CELL ** 2 / 100))
+               % (view, len(cells) * CELL ** 2 / 100))
     print('%d failed' % len(failures) if failures else 'all checks passed')
     return not failures
 
@@ -156,7 +158,7 @@ def check(name, data, reference):
 def main(args):
     if args[:1] == ['--check'] and 2 <= len(args) <= 3 and args[1] in PARTS:
         bodies, title = PARTS[args[1]][:2]
-        reference = eb.encode_ply(*eb.mesh_of(bodies()), title)
+        reference = encode_ply(*mesh_of(bodies()), title)
         data = reference
         if len(args) == 3:
             with open(args[2], 'rb') as f:
@@ -164,7 +166,7 @@ def main(args):
         return 0 if check(args[1], data, reference) else 1
     if len(args) == 2 and args[0] in PARTS:
         bodies, title = PARTS[args[0]][:2]
-        eb.write_file(args[1], eb.encode_ply(*eb.mesh_of(bodies()), title))
+        write_file(args[1], encode_ply(*mesh_of(bodies()), title))
         return 0
     print('usage: parts.py NAME OUT.ply | --check NAME [IN.ply]; names: ' + ', '.join(PARTS), file=sys.stderr)
     return 2
