@@ -8,8 +8,8 @@
 
 namespace nearpose {
 
-// Of the points that fall into a pixel the nearest is kept, and of equally near ones the first. Pixels ascend; normals
-// are turned towards the camera. Throws std::invalid_argument if the pose or the camera is not valid.
+// The nearest of the points that fall into a pixel is kept, the first where several are equally near. Pixels ascend;
+// normals are turned towards the camera. Throws std::invalid_argument if the pose or the camera is not valid.
 View nearest_points(const SurfaceSamples& samples, const Pose& camera_from_object, const PinholeCamera& camera);
 
 }  // namespace nearpose

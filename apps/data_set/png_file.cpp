@@ -68,7 +68,7 @@ OpenPng open_png(const std::filesystem::path& path, ImageSize expected) {
     OpenPng png;
     png.bytes = read_file_start(path, kHeaderBytes);
     if (!has_png_header(png.bytes) && png.bytes.size() == kHeaderBytes) throw png_error(path, "is not a PNG");
-    // Of a shorter file the library says what is wrong.
+    // Where a file is shorter, the library says what is wrong.
     if (has_png_header(png.bytes)) {
         check_cap(path, big_endian_at(png.bytes, kWidthAt), big_endian_at(png.bytes, kHeightAt));
         png.bytes = read_whole_file(path, max_png_bytes(png.bytes));

@@ -25,7 +25,7 @@ struct CoverageBin {
     Coverage coverage;
 };
 
-// Of all frames, whether their distance is known or not.
+// Coverage over all frames, whether their distance is known or not.
 Coverage coverage_of(const std::vector<FrameErrors>& frames);
 
 // By distance, ascending: bins of one round width (1, 2 or 5 times a power of ten, at least 1 mm), the least of which

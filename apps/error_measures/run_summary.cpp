@@ -20,7 +20,7 @@ constexpr auto kBootstrapDraw = static_cast<RandomPurpose>(200);
 
 using Frames = std::vector<FrameErrors>;
 
-// Of the frames with a pose.
+// Errors of the frames that have a pose.
 template <typename Value>
 Statistics statistics_over(const Frames& frames, const Value& value) {
     std::vector<double> values;

@@ -9,7 +9,7 @@
 
 namespace nearpose::evaluation {
 
-// Of all frames of a run, those of the burn-in too.
+// Counts over all frames of a run, the burn-in included.
 struct VerdictCounts {
     int frames = 0;         // with a verdict
     int accepts = 0;        //

@@ -39,11 +39,12 @@ void add_estimator_options(CLI::App& command, EstimateOptions& options) {
         ->check(CLI::IsMember(symmetry_choices()));
     command
         .add_option("--particles", options.particles,
-                    "Number of particles, the same in every frame [200, and fewer while one mode holds]")
+                    "Number of particles, the same in every frame [200, and fewer in tracking]")
         ->check(CLI::Range(1, 1000000));
     command
         .add_option("--budget-ms", options.budget_ms,
-                    "Time for a frame: particles, rivals and starts are left out to keep within it, and results then "
+                    "Time for a frame: particles, alternatives and search candidates are left out to keep within it; "
+                    "results then "
                     "depend on the machine [0: as long as it takes]")
         ->check(CLI::Range(0.0, 1e6));
     command.add_option("--threads", options.threads, "Threads; 0: all. Results do not depend on it")

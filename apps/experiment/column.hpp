@@ -43,7 +43,8 @@ std::vector<std::string> column_names(TableKind kind);
 tables::Column heading_of(TableKind kind, const std::string& name);
 tables::Entry entry_of(TableKind kind, const std::string& name, const std::vector<Figures>& runs);
 
-// Of the median, from ranks of the values, which may hold infinity; without bounds where there are too few (5).
+// Confidence interval of the median, from ranks of the values, which may hold infinity; without bounds where there are
+// too few (5).
 tables::Entry median_of(std::vector<double> values);
 
 }  // namespace nearpose::experiment

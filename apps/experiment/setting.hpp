@@ -12,7 +12,7 @@
 
 namespace nearpose::experiment {
 
-// Of the verdict, where nothing else is set: tolerance_mm and tolerance_deg.
+// Tolerance of the verdict, where nothing else is set: tolerance_mm and tolerance_deg.
 inline constexpr double kTolerance_mm = 2.0, kTolerance_deg = 1.0;
 
 // What the cells of a table are: a recording that an estimator tracks, or the views of a generator by themselves.

@@ -23,13 +23,17 @@ const std::vector<std::string>& method_names();
 // "point": point to point; "plane": point to plane.
 const std::vector<std::string>& residual_names();
 
-// "nothing"; "fine_fit": the chosen mode as it was refined, without the sensor's errors and the track; "outline": a
-// face laid into a larger one counts as found; "depths": model far before what is measured costs no more than model
-// just before it, but where guesses are screened; "pairs": starts on single points of the surface and around the
-// centroid; "shortlist": a search refines the first of its starts, not the best of many that were refined a little;
-// "rivals": no other modes than the swarm's are tried; "confidence": an accepted pose yields to any better one, and its
-// prediction is not fitted at once; "doubts": only what contradicts the image is searched for anew; "economy": as many
-// particles and rays in every frame as at the start.
+// Parts of the default method that an experiment can leave out, and what is done instead:
+//   nothing     the whole method
+//   fine_fit    the chosen mode stays as it was refined, without the joint fit and the track
+//   outline     a face that is coplanar with its surroundings counts as found
+//   depths      free-space violations cost the same at any depth; the pruning of hypotheses stays as it is
+//   pairs       hypotheses come from single points of the surface and from the centroid
+//   shortlist   a search refines its first hypotheses, not the best of many that were refined a little
+//   rivals      no alternatives are tried beside the particles' own modes
+//   confidence  an accepted pose yields to any better one, and its prediction is not fitted at once
+//   doubts      only a pose that the image contradicts is searched for anew
+//   economy     as many particles and rays in every frame as in the first
 const std::vector<std::string>& parts_of_method();
 
 struct EstimatorSetup {

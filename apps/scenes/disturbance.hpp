@@ -31,7 +31,7 @@ struct Disturbances {
 // `num_delivered` of the `num_frames` are not dropped. Throws std::invalid_argument naming what is wrong and why.
 void validate(const Disturbances& disturbances, Scenario scenario, int num_frames, int num_delivered);
 
-// Of the frame numbers of a run: in the middle of its middle third.
+// The frame in the middle of the middle third of a run.
 bool looks_away(const Disturbances& disturbances, int frame, int num_frames);
 // The first frame in which the part lies elsewhere; nothing where it stays.
 std::optional<int> move_frame(const Disturbances& disturbances, int num_frames);

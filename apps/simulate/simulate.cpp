@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr int kSceneId = 1;
 constexpr int kUnnamedId = 1;  // of a part that is not built in
-// Of the silhouette that must be seen for another instance to be asked for, as BOP's own lists have it.
+// Share of the silhouette that must be seen for another instance to be asked for, as BOP's own lists have it.
 constexpr double kLeastVisibleFraction = 0.1;
 
 // Simulates one frame and writes its images.

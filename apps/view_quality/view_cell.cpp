@@ -16,7 +16,7 @@
 namespace nearpose::compare {
 namespace {
 
-// Of all triangles, or of all discs of a cloud.
+// Area of all triangles, or of all discs of a cloud.
 double area_of(const Mesh& mesh) {
     if (mesh.is_cloud()) {
         const double disc_m2 = std::numbers::pi * static_cast<double>(mesh.disc_radius_m * mesh.disc_radius_m);

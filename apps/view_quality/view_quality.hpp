@@ -21,7 +21,7 @@ struct ViewTask {
     int timed_views = 200;       // 0: the time is not taken
 };
 
-// Of all points and pixels of the views at several poses.
+// Measures over all points and pixels of the views at several poses.
 struct ViewQuality {
     int views = 0;                 // poses that show the part; the others do not count
     double points_per_view = 0.0;  // that the generator gave

@@ -52,7 +52,7 @@ class RegistrationCost {
     bool operator()(const double* turn_and_shift, double* residuals, double* jacobian) const;
 
     Pose pose_at(const double* turn_and_shift) const;
-    // Of the pairs alone. Valid until the next call with other parameters.
+    // The equations of the pairs alone. Valid until the next call with other parameters.
     const RegistrationEquations& sums_at(const Twist& turn_and_shift) const;
 
   private:

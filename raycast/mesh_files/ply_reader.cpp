@@ -64,7 +64,7 @@ class PlyBody {
     std::size_t length(const PlyProperty& property) {
         const double count = scalar(property.count_type);
         if (!(count >= 0.0 && count == std::floor(count))) fail("the length of a list is not 0 or more");
-        // Of the last value the separator may be missing.
+        // The last value may lack its separator.
         if (count * static_cast<double>(min_size(property.type)) > static_cast<double>(row_left() + 1)) {
             fail("a list is longer than the rest of the file: the file is cut short or broken");
         }

@@ -11,7 +11,7 @@ namespace {
 
 // A few millimetres off the truth.
 const Pose& start() {
-    return still().swarm[1];
+    return still().particles[1];
 }
 
 void registration(benchmark::State& state) {

@@ -62,7 +62,7 @@ PixelGrid grid_of(const Observation& observation, int max_rays) {
     return grid_over(box, max_rays);
 }
 
-std::vector<Pose> swarm_around(const Pose& camera_from_object, const ModelExtent& extent, int count) {
+std::vector<Pose> particles_around(const Pose& camera_from_object, const ModelExtent& extent, int count) {
     const Method method = method_default();
     const Diffusion spread{method.filter.diffusion_rotation_rad,
                            method.filter.diffusion_diameters * extent.diameter_m()};
@@ -74,13 +74,13 @@ const Still& still() {
         const Approach& approach = engine_block_approach();
         const Frame& frame = approach.frames[kApproachFrames / 2];
         EmbreeViewGenerator views(engine_block());
-        std::vector<Pose> swarm = swarm_around(frame.camera_from_object, views.extent(), 200);
+        std::vector<Pose> particles = particles_around(frame.camera_from_object, views.extent(), 200);
         return Still{frame,
                      approach.camera,
                      make_observation(frame.depth, approach.camera, frame.mask),
                      std::move(views),
                      CeresPoseSolver{},
-                     std::move(swarm)};
+                     std::move(particles)};
     }();
     return scene;
 }

@@ -42,7 +42,7 @@ const Approach& engine_block_approach();
 PixelGrid grid_of(const Observation& observation, int max_rays);
 
 // `count` poses spread as the default method's particles are after diffusion.
-std::vector<Pose> swarm_around(const Pose& camera_from_object, const ModelExtent& extent, int count);
+std::vector<Pose> particles_around(const Pose& camera_from_object, const ModelExtent& extent, int count);
 
 // The middle frame of the approach, ready for the stages.
 struct Still {
@@ -51,7 +51,7 @@ struct Still {
     Observation observation;
     EmbreeViewGenerator views;
     CeresPoseSolver solver;
-    std::vector<Pose> swarm;  // 200 poses
+    std::vector<Pose> particles;  // 200 poses
 };
 const Still& still();
 

@@ -11,7 +11,7 @@ namespace {
 constexpr int kParticles = 200;
 constexpr int kTracked = kApproachFrames - 1;
 
-// Of the centre of the part's box [mm].
+// Error of the centre of the part's box [mm].
 double error_mm(const Pose& found, const Frame& frame, const Eigen::Vector3d& centre) {
     return 1e3 * (found * centre - frame.camera_from_object * centre).norm();
 }

@@ -14,7 +14,7 @@ std::vector<Correspondences> pairs_of_swarm() {
     const PinholeCamera camera = camera_of(grid_of(still().observation, kRays), still().camera);
     std::vector<Correspondences> pairs;
     for (int i = 0; i < kPoses; ++i) {
-        const Pose& pose = still().swarm[static_cast<std::size_t>(i)];
+        const Pose& pose = still().particles[static_cast<std::size_t>(i)];
         pairs.push_back(
             associate_projective(still().views.generate(pose, camera), pose, still().observation, 0.04, 0.005));
     }
@@ -34,7 +34,7 @@ void blocks(benchmark::State& state) {
     for (const Correspondences& of_pose : pairs_of_swarm()) pairs.push_back(plain(of_pose));
     for (auto _ : state)
         for (std::size_t i = 0; i < pairs.size(); ++i)
-            benchmark::DoNotOptimize(naive::solve_point_to_plane(pairs[i], still().swarm[i]));
+            benchmark::DoNotOptimize(naive::solve_point_to_plane(pairs[i], still().particles[i]));
     describe(state, kPoses, "unit=solve");
     state.counters["pairs"] = static_cast<double>(pairs.front().size());
 }
@@ -43,7 +43,7 @@ void ours(benchmark::State& state) {
     const std::vector<Correspondences> pairs = pairs_of_swarm();
     for (auto _ : state)
         for (std::size_t i = 0; i < pairs.size(); ++i)
-            benchmark::DoNotOptimize(still().solver.solve(pairs[i], still().swarm[i]));
+            benchmark::DoNotOptimize(still().solver.solve(pairs[i], still().particles[i]));
     describe(state, kPoses, "unit=solve naive=least_squares/naive");
     state.counters["pairs"] = static_cast<double>(pairs.front().size());
 }

@@ -18,7 +18,7 @@ std::vector<View> views_of_swarm() {
     const PinholeCamera camera = camera_of(grid(), still().camera);
     std::vector<View> views;
     for (int i = 0; i < kPoses; ++i)
-        views.push_back(still().views.generate(still().swarm[static_cast<std::size_t>(i)], camera));
+        views.push_back(still().views.generate(still().particles[static_cast<std::size_t>(i)], camera));
     return views;
 }
 
@@ -28,7 +28,7 @@ void nearest(benchmark::State& state) {
     const std::vector<View> views = views_of_swarm();
     for (auto _ : state) {
         for (std::size_t i = 0; i < views.size(); ++i) {
-            const Pose& pose = still().swarm[i];
+            const Pose& pose = still().particles[i];
             const auto pairs =
                 naive::nearest_pairs({views[i].points_in_object, views[i].normals_in_object}, pose, cloud, kGate_m);
             benchmark::DoNotOptimize(naive::overlap_scaled_error(pairs, views[i].size(), pose, kGate_m));
@@ -45,7 +45,7 @@ void pixels(benchmark::State& state, bool with_outline) {
     options.with_outline = with_outline;
     for (auto _ : state)
         for (std::size_t i = 0; i < views.size(); ++i)
-            benchmark::DoNotOptimize(pixel_cost(views[i], still().swarm[i], observed, options));
+            benchmark::DoNotOptimize(pixel_cost(views[i], still().particles[i], observed, options));
     describe(state, kPoses, "unit=pose naive=likelihood/naive");
 }
 

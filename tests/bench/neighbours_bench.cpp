@@ -1,4 +1,5 @@
-// Pairs for the views of a swarm: one FLANN call a point against our batched index and our projective association.
+// Pairs for the views of all particles: one FLANN call a point against our batched index and our projective
+// association.
 #include "core/filter/association.hpp"
 #include "tests/bench/described.hpp"
 #include "tests/bench/fixture.hpp"
@@ -15,7 +16,7 @@ std::vector<View> views_of_swarm() {
     const PinholeCamera camera = camera_of(grid_of(still().observation, kRays), still().camera);
     std::vector<View> views;
     for (int i = 0; i < kPoses; ++i)
-        views.push_back(still().views.generate(still().swarm[static_cast<std::size_t>(i)], camera));
+        views.push_back(still().views.generate(still().particles[static_cast<std::size_t>(i)], camera));
     return views;
 }
 
@@ -26,7 +27,7 @@ void measure(benchmark::State& state, const std::string& label, const Associate&
     for (auto _ : state) {
         points = 0;
         for (std::size_t i = 0; i < views.size(); ++i) {
-            benchmark::DoNotOptimize(associate(views[i], still().swarm[i]));
+            benchmark::DoNotOptimize(associate(views[i], still().particles[i]));
             points += views[i].size();
         }
     }
@@ -54,7 +55,7 @@ void projective(benchmark::State& state) {
 
 void consensus(benchmark::State& state, bool ours) {
     const View view = views_of_swarm().front();
-    const Correspondences pairs = associate_nearest(view, still().swarm.front(), still().observation, kGate_m);
+    const Correspondences pairs = associate_nearest(view, still().particles.front(), still().observation, kGate_m);
     std::vector<naive::Pair> plain;
     for (std::size_t k = 0; k < pairs.size(); ++k)
         plain.push_back({pairs.points_in_object[k].cast<double>(), pairs.normals_in_object[k].cast<double>(),

@@ -1,4 +1,4 @@
-// Views of a swarm: ours, the bare Embree calls for the same rays, and single rays of 160 x 120 pixels.
+// Views of all particles: ours, the bare Embree calls for the same rays, and single rays of 160 x 120 pixels.
 #include <algorithm>
 
 #include "tests/bench/described.hpp"
@@ -16,9 +16,9 @@ PinholeCamera grid_camera(int rays) {
 }
 
 std::vector<Pose> poses_for(int rays) {
-    const std::vector<Pose>& swarm = still().swarm;
-    const auto count = std::min<std::size_t>(swarm.size(), kTotalRays / rays);
-    return {swarm.begin(), swarm.begin() + static_cast<std::ptrdiff_t>(count)};
+    const std::vector<Pose>& particles = still().particles;
+    const auto count = std::min<std::size_t>(particles.size(), kTotalRays / rays);
+    return {particles.begin(), particles.begin() + static_cast<std::ptrdiff_t>(count)};
 }
 
 std::vector<naive::RayPacket> packets_for(int rays) {
@@ -77,7 +77,7 @@ void single_rays(benchmark::State& state) {
     constexpr int kPoses = 4;
     for (auto _ : state)
         for (int i = 0; i < kPoses; ++i)
-            benchmark::DoNotOptimize(views.generate(still().swarm[static_cast<std::size_t>(i)], camera));
+            benchmark::DoNotOptimize(views.generate(still().particles[static_cast<std::size_t>(i)], camera));
     describe(state, kPoses, "unit=view");
 }
 

@@ -192,7 +192,7 @@ TEST_F(Scene, MasksAreFoundByTheObjectsPlaceInTheList) {
     write_mask_png(mask_path(scene_, 0, 1), all);
     EXPECT_EQ(MaskSource(scene, 9).load(scene.frames[0])->value[0], 0);       // no scene_gt.json: 000000
     EXPECT_EQ(MaskSource(scene, 9, 1).load(scene.frames[0])->value[0], 255);  // given
-    // Of the truth nothing but the order is looked at: the poses here are no poses.
+    // Only the order of the truth is looked at: the poses here are no poses.
     write_text(scene_ / "scene_gt.json",
                R"({"0": [{"obj_id": 4}, {"obj_id": 9}, {"obj_id": 9}], "1": [{"obj_id": 4}]})");
     const MaskSource masks(scene, 9);

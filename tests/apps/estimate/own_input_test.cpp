@@ -30,7 +30,7 @@ void expect_near_truth(const TinyScene& scene, const fs::path& csv, int num_fram
     }
 }
 
-// Of the part alone: the scene has nothing else.
+// A cloud of the part alone: the scene has nothing else.
 std::vector<Eigen::Vector3f> measured_points(const TinyScene& scene, int frame) {
     const DepthImage depth =
         data_set::read_depth_png(scene.scene() / ("depth/00000" + std::to_string(frame) + ".png"), 0.1);

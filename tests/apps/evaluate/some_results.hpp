@@ -20,8 +20,8 @@ Pose moved(Pose pose, double offset_m);
 std::vector<data_set::PoseRow> some_rows(const TinyScene& scene, double offset_m, int scene_id = 7);
 void write_results(const TinyScene& scene, const std::vector<data_set::PoseRow>& rows);
 
-// Of the same rows, with a standard deviation of 1 mm and 0.01 rad along all axes; frame 2 is predicted. It accepts
-// frame 0, goes on at frame 2, gives up frame 3; frame 1 has no pose.
+// Estimates for the same rows, with a standard deviation of 1 mm and 0.01 rad along all axes; frame 2 is predicted. It
+// accepts frame 0, goes on at frame 2, gives up frame 3; frame 1 has no pose.
 void write_log(const TinyScene& scene, const std::vector<data_set::PoseRow>& rows,
                const std::string& first_line = program::first_log_line({}));
 

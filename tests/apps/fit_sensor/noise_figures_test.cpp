@@ -20,7 +20,7 @@ TEST(NoiseFigures, CorrelationIsThatOfTheSmoothedNoise) {
         EXPECT_NEAR(correlation_for(mean), correlation, 1e-6);
     }
     EXPECT_EQ(variance_growth(0.0), 1.0);
-    // Of a Gaussian wide against the pixels: the integral of exp(-r^2 / (2 c^2)).
+    // For a Gaussian that is wide against the pixels: the integral of exp(-r^2 / (2 c^2)).
     EXPECT_NEAR(variance_growth(4.0), 2.0 * M_PI * 16.0, 2.0);
 }
 
