@@ -109,6 +109,7 @@ void validate(const AdaptiveEffort& effort) {
 void validate(const Method& method) {
     validate(method.search);
     validate(method.filter);
+    check_option("window_margin", method.window_margin, 0.0, 10.0);
     validate(method.step, "step");
     validate(method.pixel_cost);
     check_option("free_space_depth_diameters", method.free_space_depth_diameters, 0.0, 10.0);

@@ -87,7 +87,8 @@ struct AdaptiveEffort {
 struct Method {
     SearchOptions search;
     FilterOptions filter;
-    GradientStep step;  // taken by each particle in each frame
+    double window_margin = 0.2;  // of the image box in which the object may lie: model beyond what is seen must show
+    GradientStep step;           // taken by each particle in each frame
     Cost cost = Cost::kPixels;
     bool scale_by_overlap = true;  // of kOverlapMse: times m / n; false: the plain mean squared error of the pairs
     PixelCostOptions pixel_cost;

@@ -46,7 +46,7 @@ struct RecordingOptions {
 // Throws std::invalid_argument naming field, value and bound.
 void validate(const RecordingOptions& options);
 
-// Which frames are dropped, by dropped_fraction.
+// How many frames are dropped, by dropped_fraction.
 int num_dropped(const RecordingOptions& options);
 
 // Another part in the image that the truth speaks of: a copy, or another built-in part.

@@ -53,11 +53,10 @@ PixelBox box_around(const Frame& frame, const Pose& camera_from_object) {
 }  // namespace
 
 PixelGrid ray_grid(const Frame& frame, const std::optional<Pose>& around, int max_rays) {
-    constexpr double kMargin = 0.2;  // of the box
     const Observation& observation = frame.observation;
     const bool everywhere = observation.segmented() || !around;
     const PixelBox box = everywhere ? observation.candidate_box() : box_around(frame, *around);
-    return grid_in(box, kMargin, observation.camera(), max_rays);
+    return grid_in(box, frame.method().window_margin, observation.camera(), max_rays);
 }
 
 PixelGrid ray_grid_on_model(const Frame& frame, const Pose& camera_from_object, int max_rays) {
