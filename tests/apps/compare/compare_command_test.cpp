@@ -1,6 +1,8 @@
 // nearpose compare, run as a user would.
 #include <gtest/gtest.h>
 
+#include "apps/tables/results.hpp"
+#include "tests/apps/support/contains.hpp"
 #include "tests/apps/support/tiny_scene.hpp"
 
 namespace nearpose::compare {
@@ -9,10 +11,6 @@ namespace {
 using program_tests::Outcome;
 using program_tests::run_nearpose;
 using program_tests::TinyScene;
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
 
 TEST(CompareCommand, ComparesViewsAlone) {
     const TinyScene scene(1);

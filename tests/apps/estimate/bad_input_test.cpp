@@ -7,20 +7,14 @@
 
 #include "apps/data_set/png_file.hpp"
 #include "apps/data_set/result_csv.hpp"
+#include "tests/apps/estimate/estimate_line.hpp"
+#include "tests/apps/support/contains.hpp"
 #include "tests/apps/support/tiny_scene.hpp"
 
 namespace nearpose::program_tests {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
-std::string estimate(const TinyScene& scene, const std::string& more) {
-    return "estimate " + scene.input() + "--out " + scene.file("poses.csv").string() + " " + more;
-}
 
 struct BadFrame {
     const char* name;

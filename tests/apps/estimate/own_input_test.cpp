@@ -7,16 +7,13 @@
 #include "apps/data_set/png_file.hpp"
 #include "apps/data_set/result_csv.hpp"
 #include "raycast/mesh_loader.hpp"
+#include "tests/apps/support/contains.hpp"
 #include "tests/apps/support/tiny_scene.hpp"
 
 namespace nearpose::program_tests {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
 
 void expect_near_truth(const TinyScene& scene, const fs::path& csv, int num_frames, double tolerance_m,
                        double tolerance_rad) {

@@ -10,10 +10,6 @@ Verdict verdict_of_frame(int frame) {
 
 }  // namespace
 
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 std::string evaluate(const TinyScene& scene) {
     return "evaluate --scene " + scene.scene().string() + " --models " + scene.models().string() +
            " --object 1 --burn-in 0 --results " + scene.file("poses.csv").string() + " ";

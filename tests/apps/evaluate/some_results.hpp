@@ -6,11 +6,10 @@
 
 #include "apps/data_set/result_csv.hpp"
 #include "apps/estimate/frame_log.hpp"
+#include "tests/apps/support/contains.hpp"
 #include "tests/apps/support/tiny_scene.hpp"
 
 namespace nearpose::program_tests {
-
-bool contains(const std::string& text, const std::string& part);
 
 // The call of evaluate for the scene's poses.csv.
 std::string evaluate(const TinyScene& scene);

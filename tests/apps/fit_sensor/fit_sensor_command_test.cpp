@@ -6,6 +6,7 @@
 
 #include "apps/data_set/bop_writer.hpp"
 #include "apps/depth_sensor/sensor_file.hpp"
+#include "tests/apps/support/contains.hpp"
 #include "tests/apps/support/tiny_scene.hpp"
 
 namespace nearpose::program_tests {
@@ -13,10 +14,6 @@ namespace {
 
 const PinholeCamera kCamera{120, 90, 110.0, 110.0, 59.5, 44.5};
 constexpr double kScale_mm = 0.05;
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
 
 std::filesystem::path new_folder() {
     const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();

@@ -1,14 +1,11 @@
 // How the program answers before it does anything.
 #include <gtest/gtest.h>
 
+#include "tests/apps/support/contains.hpp"
 #include "tests/apps/support/tiny_scene.hpp"
 
 namespace nearpose::program_tests {
 namespace {
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
 
 // One line on the error stream.
 void expect_one_error(const Outcome& outcome, int exit_code, const std::string& part) {

@@ -2,14 +2,11 @@
 #include <gtest/gtest.h>
 
 #include "apps/data_set/png_file.hpp"
+#include "tests/apps/support/contains.hpp"
 #include "tests/apps/support/tiny_scene.hpp"
 
 namespace nearpose::program_tests {
 namespace {
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
 
 std::string render(const TinyScene& scene, const std::string& pose) {
     return "render --model " + (scene.models() / "obj_000001.ply").string() + " --camera " +

@@ -5,33 +5,11 @@
 #include <limits>
 #include <set>
 
-#include "apps/scenes/parts.hpp"
-#include "apps/scenes/recording.hpp"
 #include "apps/scenes/world.hpp"
+#include "tests/apps/scenes/small_recording.hpp"
 
 namespace nearpose::simulate {
 namespace {
-
-const PinholeCamera kCamera{160, 120, 150.0, 150.0, 79.5, 59.5};
-
-const EmbeddedPart& block() {
-    static const EmbeddedPart part = embedded_part("engine_block");
-    return part;
-}
-
-Eigen::Vector3d eye_of(const Pose& camera_from_object) {
-    return camera_from_object.inverse().translation;
-}
-
-RecordingOptions small(Scenario scenario, int frames, std::uint64_t seed = 1) {
-    RecordingOptions options;
-    options.scenario = scenario;
-    options.num_frames = frames;
-    options.seed = seed;
-    options.camera = kCamera;
-    options.part_name = "engine_block";
-    return options;
-}
 
 TEST(Clutter, HidesAsMuchAsItIsToldWhereMostIsHidden) {
     for (const double occlusion : {0.2, 0.35, 0.5}) {
