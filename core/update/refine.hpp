@@ -14,11 +14,10 @@ namespace nearpose {
 std::vector<Mode> refine(const std::vector<Mode>& modes, const Situation& situation, const Frame& frame,
                          Ledger& ledger);
 
-Mode mode_of(const MovedParticle& refined);
+Mode mode_of(const RefinedMode& refined);
 
 // What the image says of the predicted pose without moving it.
-MovedParticle evaluate_prediction(const Pose& predicted, const Situation& situation, const Frame& frame,
-                                  Ledger& ledger);
+RefinedMode evaluate_prediction(const Pose& predicted, const Situation& situation, const Frame& frame, Ledger& ledger);
 
 // Compares the image with the predicted pose, where a verified pose was carried by the measured motion of the arm. Sets
 // the situation's prediction where the image agrees, and its phase and plan.
