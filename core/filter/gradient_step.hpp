@@ -5,7 +5,7 @@
 
 #include "core/base/random.hpp"
 #include "core/evidence/likelihood.hpp"
-#include "core/observation/observation.hpp"
+#include "core/observation/observed_grid.hpp"
 #include "core/pose_solver.hpp"
 #include "core/view_generator.hpp"
 
