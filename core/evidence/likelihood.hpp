@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/correspondences.hpp"
-#include "core/observation/observation.hpp"
+#include "core/observation/observed_grid.hpp"
 #include "core/view_generator.hpp"
 
 namespace nearpose {

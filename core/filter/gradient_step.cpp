@@ -21,70 +21,80 @@ class Timer {
     Clock::time_point start_;
 };
 
-View cast(const Pose& pose, const StepContext& context, MovedParticle& moved) {
-    const Timer timer(moved.seconds.views);
-    View view = context.views.generate(pose, context.observed.camera);
-    moved.counts.view_points += static_cast<long>(view.size());
+// A pose on its way, and what was spent on it so far.
+struct Progress {
+    Pose camera_from_object;
+    StepCounts counts;
+    StageSeconds seconds;
+};
+
+View cast(const StepContext& context, Progress& at) {
+    const Timer timer(at.seconds.views);
+    View view = context.views.generate(at.camera_from_object, context.observed.camera);
+    at.counts.view_points += static_cast<long>(view.size());
     return view;
 }
 
-Correspondences find_pairs(const View& view, const StepContext& context, RandomStream random, MovedParticle& moved) {
-    const Timer timer(moved.seconds.association);
+Correspondences find_pairs(const View& view, const StepContext& context, RandomStream random, Progress& at) {
+    const Timer timer(at.seconds.association);
     const GradientStep& step = context.step;
-    const Pose& pose = moved.camera_from_object;
+    const Pose& pose = at.camera_from_object;
     const double diameter_m = context.views.extent().diameter_m();
     const double gate_m = step.max_distance_diameters * diameter_m;
     Correspondences pairs =
         step.association == Association::kNearest
             ? associate_nearest(view, pose, context.observation, gate_m)
             : associate_projective(view, pose, context.observation, gate_m, step.extra_sigma_diameters * diameter_m);
-    moved.counts.pairs += static_cast<long>(pairs.size());
+    at.counts.pairs += static_cast<long>(pairs.size());
     if (step.max_normal_angle_rad > 0.0) {
         const std::size_t before = pairs.size();
         pairs = reject_by_normal(pairs, pose, step.max_normal_angle_rad);
-        moved.counts.rejected_by_normal += static_cast<long>(before - pairs.size());
+        at.counts.rejected_by_normal += static_cast<long>(before - pairs.size());
     }
     if (step.consensus_draws > 0) {
         const std::size_t before = pairs.size();
         pairs = reject_by_sample_consensus(
             pairs, {step.consensus_draws, step.consensus_distance_diameters * diameter_m}, random);
-        moved.counts.rejected_by_consensus += static_cast<long>(before - pairs.size());
+        at.counts.rejected_by_consensus += static_cast<long>(before - pairs.size());
     }
     return pairs;
 }
 
-void solve(const Correspondences& pairs, const StepContext& context, MovedParticle& moved) {
-    const Timer timer(moved.seconds.solving);
-    const SolveResult solved = context.solver.solve(pairs, moved.camera_from_object);
-    ++moved.counts.solves;
-    moved.counts.solves_with_too_few_pairs += solved.status == SolveStatus::kTooFewPairs;
-    moved.counts.solves_not_usable += solved.status == SolveStatus::kNotUsable;
+void solve(const Correspondences& pairs, const StepContext& context, Progress& at) {
+    const Timer timer(at.seconds.solving);
+    const SolveResult solved = context.solver.solve(pairs, at.camera_from_object);
+    ++at.counts.solves;
+    at.counts.solves_with_too_few_pairs += solved.status == SolveStatus::kTooFewPairs;
+    at.counts.solves_not_usable += solved.status == SolveStatus::kNotUsable;
     if (solved.status != SolveStatus::kConverged || !is_valid(solved.camera_from_object)) return;
-    moved.camera_from_object =
-        context.step.step_size == 1.0
-            ? solved.camera_from_object
-            : interpolate(moved.camera_from_object, solved.camera_from_object, context.step.step_size);
+    at.camera_from_object = context.step.step_size == 1.0
+                                ? solved.camera_from_object
+                                : interpolate(at.camera_from_object, solved.camera_from_object, context.step.step_size);
 }
 
-void weigh_by_pixels(const StepContext& context, const PixelCostOptions& options, MovedParticle& moved) {
-    const View view = cast(moved.camera_from_object, context, moved);
-    const Timer timer(moved.seconds.likelihood);
-    const PixelCost cost = pixel_cost(view, moved.camera_from_object, context.observed, options);
+MovedParticle weighed_by_pixels(const StepContext& context, Progress& at) {
+    const View view = cast(context, at);
+    const Timer timer(at.seconds.likelihood);
+    const PixelCost cost = pixel_cost(view, at.camera_from_object, context.observed, context.pixel_cost);
+    MovedParticle moved;
     moved.cost = cost.cost;
     moved.support = cost.support();
     moved.gain = cost.gain;
-    moved.negative_log_likelihood = negative_log_likelihood(cost, options);
+    moved.negative_log_likelihood = negative_log_likelihood(cost, context.pixel_cost);
+    return moved;
 }
 
-void weigh_by_overlap(const Correspondences& pairs, std::size_t num_view_points, const StepContext& context,
-                      MovedParticle& moved) {
-    const Timer timer(moved.seconds.likelihood);
+MovedParticle weighed_by_overlap(const Correspondences& pairs, std::size_t num_view_points, const StepContext& context,
+                                 Progress& at) {
+    const Timer timer(at.seconds.likelihood);
     const double gate_m = context.step.max_distance_diameters * context.views.extent().diameter_m();
     const double sensor_m = context.observation.sensor().sigma_m(context.observation.mean_distance_m());
     // As if the pairs were the whole view, m / n is 1.
     const std::size_t m = context.scale_by_overlap ? num_view_points : pairs.size();
-    moved.cost = overlap_scaled_mse(pairs, moved.camera_from_object, m, gate_m);
+    MovedParticle moved;
+    moved.cost = overlap_scaled_mse(pairs, at.camera_from_object, m, gate_m);
     moved.negative_log_likelihood = negative_log_likelihood(moved.cost, sensor_m, gate_m);
+    return moved;
 }
 
 }  // namespace
@@ -130,28 +140,27 @@ StepCounts& StepCounts::operator+=(const StepCounts& other) {
 }
 
 MovedParticle move_particle(const Pose& camera_from_object, const StepContext& context, const RandomStream& random) {
-    MovedParticle moved;
-    moved.camera_from_object = camera_from_object;
-    const View view = cast(camera_from_object, context, moved);
+    Progress at{camera_from_object, {}, {}};
+    const View view = cast(context, at);
     Correspondences pairs;
     for (int round = 0; round < context.step.rounds; ++round) {
-        pairs = find_pairs(view, context, random, moved);
-        solve(pairs, context, moved);
+        pairs = find_pairs(view, context, random, at);
+        solve(pairs, context, at);
     }
     // Without a step there are no pairs yet, and the overlap cost is of pairs.
-    if (context.step.rounds == 0 && context.cost == Cost::kOverlapMse) pairs = find_pairs(view, context, random, moved);
-    if (context.cost == Cost::kPixels)
-        weigh_by_pixels(context, context.pixel_cost, moved);
-    else
-        weigh_by_overlap(pairs, view.size(), context, moved);
+    if (context.step.rounds == 0 && context.cost == Cost::kOverlapMse) pairs = find_pairs(view, context, random, at);
+    MovedParticle moved = context.cost == Cost::kPixels ? weighed_by_pixels(context, at)
+                                                        : weighed_by_overlap(pairs, view.size(), context, at);
+    moved.camera_from_object = at.camera_from_object;
+    moved.counts = at.counts;
+    moved.seconds = at.seconds;
     return moved;
 }
 
-MovedParticle refine_mode(const Pose& camera_from_object, const StepContext& context,
-                          const RefinementOptions& options) {
-    MovedParticle moved;
-    moved.camera_from_object = camera_from_object;
-    GradientStep step = context.step;
+RefinedMode refine_mode(const Pose& camera_from_object, const StepContext& context, const RefinementOptions& options) {
+    Progress at{camera_from_object, {}, {}};
+    StepContext sharper = context;
+    GradientStep& step = sharper.step;
     step.association = Association::kProjective;
     step.extra_sigma_diameters = options.first_extra_sigma_diameters;
     const double diameter_m = context.views.extent().diameter_m();
@@ -160,20 +169,24 @@ MovedParticle refine_mode(const Pose& camera_from_object, const StepContext& con
     View view;
     for (int round = 0; round < options.rounds; ++round) {
         step.max_distance_diameters = options.gate_sigmas * (step.extra_sigma_diameters + sensor_m / diameter_m);
-        const StepContext sharper{context.views, context.solver, context.observation, context.observed,
-                                  step,          context.cost,   context.pixel_cost,  context.scale_by_overlap};
-        if (round % options.rounds_per_view == 0) view = cast(moved.camera_from_object, context, moved);
-        solve(find_pairs(view, sharper, unused, moved), sharper, moved);
+        if (round % options.rounds_per_view == 0) view = cast(sharper, at);
+        solve(find_pairs(view, sharper, unused, at), sharper, at);
         step.extra_sigma_diameters *= 0.5;
     }
-    const Timer timer(moved.seconds.likelihood);
-    const PixelCost cost = refined_cost(moved.camera_from_object, context, options);
-    moved.cost = cost.cost;
-    moved.support = cost.support();
-    moved.gain = cost.gain;
-    moved.agreement = cost.agreement();
-    moved.log_evidence = log_evidence(cost, context.pixel_cost, options.rays_per_evidence);
-    return moved;
+    RefinedMode refined;
+    {
+        const Timer timer(at.seconds.likelihood);
+        const PixelCost cost = refined_cost(at.camera_from_object, context, options);
+        refined.cost = cost.cost;
+        refined.support = cost.support();
+        refined.gain = cost.gain;
+        refined.agreement = cost.agreement();
+        refined.log_evidence = log_evidence(cost, context.pixel_cost, options.rays_per_evidence);
+    }
+    refined.camera_from_object = at.camera_from_object;
+    refined.counts = at.counts;
+    refined.seconds = at.seconds;
+    return refined;
 }
 
 PixelCost refined_cost(const Pose& camera_from_object, const StepContext& context, const RefinementOptions& options) {

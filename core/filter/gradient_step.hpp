@@ -5,7 +5,7 @@
 
 #include "core/base/random.hpp"
 #include "core/evidence/likelihood.hpp"
-#include "core/observation/observation.hpp"
+#include "core/observation/observed_grid.hpp"
 #include "core/pose_solver.hpp"
 #include "core/view_generator.hpp"
 
@@ -65,14 +65,25 @@ struct StepCounts {
     StepCounts& operator+=(const StepCounts& other);
 };
 
+// A particle after its step.
 struct MovedParticle {
     Pose camera_from_object;
     double negative_log_likelihood = 0.0;
-    double cost = 0.0;          // the pixel cost, or epsilon [m^2]
-    double support = 0.0;       // with the pixel cost: share of the model's rays that agree
-    double log_evidence = 0.0;  // of a refined mode
-    double agreement = 0.0;     // of a refined mode: share of the rays that judge it and agree
-    double gain = 0.0;          // grid pixels by which the image is explained better than without the object; no mask
+    double cost = 0.0;     // the pixel cost, or the paper's epsilon [m^2]
+    double support = 0.0;  // with the pixel cost: share of the model's rays that agree with the measured depth
+    double gain = 0.0;     // with the pixel cost: as PixelCost::gain [grid pixels]
+    StepCounts counts;
+    StageSeconds seconds;
+};
+
+// A mode after its refinement.
+struct RefinedMode {
+    Pose camera_from_object;
+    double cost = 0.0;          // the pixel cost
+    double support = 0.0;       // share of the model's rays that agree with the measured depth
+    double log_evidence = 0.0;  // of the image for this pose, up to a constant [nats]
+    double agreement = 0.0;     // share of the rays that say anything about the surface and agree with it
+    double gain = 0.0;          // as PixelCost::gain [grid pixels]
     StepCounts counts;
     StageSeconds seconds;
 };
@@ -83,7 +94,7 @@ struct StepContext {
     const PoseSolver& solver;
     const Observation& observation;
     const ObservedGrid& observed;  // where views are cast
-    const GradientStep& step;
+    GradientStep step;
     Cost cost = Cost::kPixels;
     PixelCostOptions pixel_cost;
     bool scale_by_overlap = true;  // as in Method
@@ -94,9 +105,9 @@ struct StepContext {
 // which is kept. `random` is used by the sample consensus.
 MovedParticle move_particle(const Pose& camera_from_object, const StepContext& context, const RandomStream& random);
 
-// A mode on its way to the bottom: like move_particle, but the view is cast anew every other round, pairs are
-// projective, and the extra noise halves from round to round.
-MovedParticle refine_mode(const Pose& camera_from_object, const StepContext& context, const RefinementOptions& options);
+// Takes a mode to its minimum: as move_particle, but the view is cast anew every `rounds_per_view` rounds, pairs are
+// projective, and the noise added to the sensor's halves from round to round.
+RefinedMode refine_mode(const Pose& camera_from_object, const StepContext& context, const RefinementOptions& options);
 
 // The pixels' verdicts on a refined pose.
 PixelCost refined_cost(const Pose& camera_from_object, const StepContext& context, const RefinementOptions& options);

@@ -73,7 +73,7 @@ Choice choose_mode(const Belief& belief, const MovedParticles& moved, const Situ
     std::vector<Mode> refined = refine(hypotheses, situation, frame, ledger);
     // Where little is in view, refinement may slide off what was accepted.
     if (belief.lock.accepted_evidence > 0.0 && !situation.searching()) {
-        const MovedParticle prediction =
+        const RefinedMode prediction =
             situation.prediction ? *situation.prediction
                                  : evaluate_prediction(belief.tracked->camera_from_object, situation, frame, ledger);
         if (prediction.log_evidence > refined.front().log_evidence) refined.front() = mode_of(prediction);

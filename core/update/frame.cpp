@@ -19,9 +19,9 @@ int Ledger::affordable(Stage stage, int wanted, int least) {
     return count;
 }
 
-void Ledger::add(const MovedParticle& moved) {
-    counts += moved.counts;
-    seconds.stages += moved.seconds;
+void Ledger::add(const StepCounts& step_counts, const StageSeconds& stage_seconds) {
+    counts += step_counts;
+    seconds.stages += stage_seconds;
 }
 
 const ObservedGrid& Ledger::measured(const PixelGrid& grid, const Observation& observation) {

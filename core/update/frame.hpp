@@ -50,7 +50,7 @@ class Ledger {
     // So many of `wanted` units of a stage fit into the budget, never less than `least`.
     int affordable(Stage stage, int wanted, int least);
     // Counts and times of the particles' steps.
-    void add(const MovedParticle& moved);
+    void add(const StepCounts& step_counts, const StageSeconds& stage_seconds);
     double elapsed_s() const { return watch_.elapsed_s(); }
     // The measurement on a ray grid, made when first asked for; the reference holds as long as the ledger.
     const ObservedGrid& measured(const PixelGrid& grid, const Observation& observation);

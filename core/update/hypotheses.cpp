@@ -35,14 +35,14 @@ std::vector<Mode> preselect(const std::vector<Mode>& particles, const Situation&
     std::vector<Mode> modes = in_turns(frame.model.distinct(particles, options.tried), situation.best_from_pairs);
     const int count = ledger.affordable(Stage::kPreselection, static_cast<int>(modes.size()), 1);
     modes.resize(count);
-    std::vector<MovedParticle> moved(modes.size());
+    std::vector<RefinedMode> moved(modes.size());
     parallel_for(count, frame.options.num_threads, [&](int k) {
         const Pose& pose = modes[k].camera_from_object;
         const ObservedGrid observed = observe(frame.observation, ray_grid_on_model(frame, pose, options.rays));
         moved[k] = refine_mode(pose, frame.context(observed, frame.method().step), refinement);
         modes[k] = {moved[k].camera_from_object, -moved[k].gain * observed.grid.stride * observed.grid.stride, 0.0};
     });
-    for (const MovedParticle& mode : moved) ledger.add(mode);
+    for (const RefinedMode& mode : moved) ledger.add(mode.counts, mode.seconds);
     ledger.budget.took(Stage::kPreselection, count, watch.elapsed_s());
     return frame.model.distinct(modes, options.kept);
 }

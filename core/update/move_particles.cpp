@@ -52,7 +52,7 @@ std::vector<MovedParticle> move_poses(const std::vector<Pose>& poses, const Grad
         const ObservedGrid observed = observe_weighted(ray_grid(frame, window.around, step.max_rays), window, frame);
         parallel_for(count, threads, [&](int i) { move(i, observed); });
     }
-    for (const MovedParticle& particle : moved) ledger.add(particle);
+    for (const MovedParticle& particle : moved) ledger.add(particle.counts, particle.seconds);
     return moved;
 }
 

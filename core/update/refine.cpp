@@ -5,7 +5,7 @@
 
 namespace nearpose {
 
-Mode mode_of(const MovedParticle& refined) {
+Mode mode_of(const RefinedMode& refined) {
     return {refined.camera_from_object, refined.cost, refined.support, refined.log_evidence};
 }
 
@@ -16,7 +16,7 @@ std::vector<Mode> refine(const std::vector<Mode>& modes, const Situation& situat
     const StepContext context = frame.context(ledger.measured(grid, frame.observation), frame.method().step);
     const Stopwatch watch;
     const int count = static_cast<int>(modes.size());
-    std::vector<MovedParticle> moved(modes.size());
+    std::vector<RefinedMode> moved(modes.size());
     if (situation.prediction && count == 1) {
         moved[0] = *situation.prediction;
     } else {
@@ -26,15 +26,14 @@ std::vector<Mode> refine(const std::vector<Mode>& modes, const Situation& situat
     ledger.effort.modes += count;
     ledger.budget.took(Stage::kModes, count, watch.elapsed_s());
     std::vector<Mode> refined;
-    for (const MovedParticle& mode : moved) {
+    for (const RefinedMode& mode : moved) {
         refined.push_back(mode_of(mode));
-        ledger.add(mode);
+        ledger.add(mode.counts, mode.seconds);
     }
     return refined;
 }
 
-MovedParticle evaluate_prediction(const Pose& predicted, const Situation& situation, const Frame& frame,
-                                  Ledger& ledger) {
+RefinedMode evaluate_prediction(const Pose& predicted, const Situation& situation, const Frame& frame, Ledger& ledger) {
     RefinementOptions unmoved = situation.plan.refinement;
     unmoved.rounds = 0;
     const PixelGrid grid = ray_grid(frame, situation.window.around, unmoved.max_rays);
@@ -45,8 +44,7 @@ MovedParticle evaluate_prediction(const Pose& predicted, const Situation& situat
 void gate_prediction(Situation& situation, const Belief& predicted, const Frame& frame, Ledger& ledger) {
     const bool verified = situation.phase == Phase::kConfirming || situation.phase == Phase::kTracking;
     if (!verified || !(predicted.lock.accepted_evidence > 0.0)) return;
-    const MovedParticle prediction =
-        evaluate_prediction(predicted.tracked->camera_from_object, situation, frame, ledger);
+    const RefinedMode prediction = evaluate_prediction(predicted.tracked->camera_from_object, situation, frame, ledger);
     const bool agrees = prediction.agreement >= frame.method().verification.min_agreement;
     if (agrees) situation.prediction = prediction;
     situation.phase = phase_after_prediction(situation.phase, agrees);

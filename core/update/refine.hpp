@@ -14,11 +14,10 @@ namespace nearpose {
 std::vector<Mode> refine(const std::vector<Mode>& modes, const Situation& situation, const Frame& frame,
                          Ledger& ledger);
 
-Mode mode_of(const MovedParticle& refined);
+Mode mode_of(const RefinedMode& refined);
 
 // Weighs the predicted pose without moving it.
-MovedParticle evaluate_prediction(const Pose& predicted, const Situation& situation, const Frame& frame,
-                                  Ledger& ledger);
+RefinedMode evaluate_prediction(const Pose& predicted, const Situation& situation, const Frame& frame, Ledger& ledger);
 
 // Compares the image with the predicted pose, where an accepted pose was carried by the arm's measured motion. Where
 // the image agrees, the prediction enters the situation; phase and plan follow.

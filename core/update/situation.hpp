@@ -24,8 +24,8 @@ struct Situation {
     Phase phase = Phase::kSearching;
     Plan plan;  // what the phase is worth
     Window window;
-    std::vector<Pose> best_from_pairs;        // a search's best hypotheses, best first, where nothing is segmented
-    std::optional<MovedParticle> prediction;  // the predicted pose, where the image agrees with it
+    std::vector<Pose> best_from_pairs;      // a search's best hypotheses, best first, where nothing is segmented
+    std::optional<RefinedMode> prediction;  // the predicted pose, where the image agrees with it
 
     bool searching() const { return phase == Phase::kSearching; }
 };

@@ -68,7 +68,7 @@ TEST_F(GradientStepTest, TheCostIsThatOfThePoseThatIsKept) {
 }
 
 TEST_F(GradientStepTest, RefiningReachesTheBottom) {
-    const MovedParticle refined = refine_mode(off(0.01, 0.001), context({}), {});
+    const RefinedMode refined = refine_mode(off(0.01, 0.001), context({}), {});
     EXPECT_LT(distance_m(refined.camera_from_object, kTruth), 1e-4);
     EXPECT_GT(refined.support, 0.98);
     EXPECT_LT(refined.cost, 0.02);

@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/random.hpp"
-
 #include <cmath>
 #include <limits>
 
+#include "core/base/random.hpp"
+#include "core/observation/observed_grid.hpp"
 #include "tests/core/analytic_part.hpp"
 
 namespace nearpose {
