@@ -35,11 +35,15 @@ UpdateResult nothing_seen(const Observation& observation) {
     return result;
 }
 
-void report(const Choice& choice, const MovedParticles& moved, UpdateResult& result) {
+UpdateStatus status_of(bool seen, bool has_pose) {
+    if (seen) return UpdateStatus::kEstimated;
+    return has_pose ? UpdateStatus::kPredicted : UpdateStatus::kNoPose;
+}
+
+void write_choice(const Choice& choice, const MovedParticles& moved, UpdateResult& result) {
     result.effective_sample_size = moved.effective_sample_size;
     result.modes = choice.modes;
     if (!choice.seen) return;
-    result.status = UpdateStatus::kEstimated;
     result.score = choice.score;
     result.mode_replaced = choice.replaces_tracked;
 }
@@ -60,6 +64,7 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
     Ledger ledger(budget_);
     UpdateResult result = nothing_seen(observation);
     std::optional<Matrix6d> fit_covariance;
+    bool seen = false;
 
     // The paper: resampling where the weights are uneven, control, diffusion.
     Belief belief = predict(belief_, frame, ledger);
@@ -69,7 +74,7 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
         belief.pose_before_loss = pose_before_loss(belief, situation.phase, method);
         const ParticleSet particles = situation.searching() ? search(situation, frame, ledger) : belief.particles;
         gate_prediction(situation, belief, frame, ledger);
-        belief.lock.phase = situation.phase;
+        belief.lock = after_decision(belief.lock, situation.phase);
 
         // The paper: view, correspondences, gradient steps and weight of every particle; the estimate is the MAP. The
         // default method compares the modes of the posterior with their alternatives.
@@ -77,12 +82,13 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
         const bool modes_compared = method.hypotheses.modes > 0;
         const Choice choice =
             modes_compared ? choose_mode(belief, moved, situation, frame, ledger) : choose_map(moved, frame);
-        if (choice.seen) adopt(belief, moved, choice);
+        seen = choice.seen;
+        if (seen) adopt(belief, moved, choice);
         // The default method: a joint fit of pose and sensor errors, fused with the prediction.
-        if (choice.seen && modes_compared) fit_covariance = fuse(belief, choice, situation, frame, ledger);
-        report(choice, moved, result);
+        if (seen && modes_compared) fit_covariance = fuse(belief, choice, situation, frame, ledger);
+        write_choice(choice, moved, result);
     }
-    if (result.status == UpdateStatus::kNoPose && belief.tracked) result.status = UpdateStatus::kPredicted;
+    result.status = status_of(seen, belief.tracked.has_value());
     const Assessment assessment = assess(result, belief, fit_covariance, frame, ledger);
     belief.lock = after_assessment(belief.lock, assessment, method);
 
@@ -99,10 +105,11 @@ void PoseEstimator::reset() {
 void PoseEstimator::reset(const Pose& camera_from_object, const Diffusion& spread) {
     if (!is_valid(camera_from_object))
         throw std::invalid_argument("PoseEstimator: the pose to start from is not a finite rigid transform");
-    reset();
-    belief_.particles = sample_around(camera_from_object, spread, model_->extent(), options_.num_particles,
-                                      options_.seed, belief_.step);
-    belief_.tracked = Mode{camera_from_object, 1.0, 0.0};
+    Belief belief = knowing_nothing(belief_.step);
+    belief.particles =
+        sample_around(camera_from_object, spread, model_->extent(), options_.num_particles, options_.seed, belief.step);
+    belief.tracked = unweighed_mode(camera_from_object);
+    belief_ = std::move(belief);
 }
 
 }  // namespace nearpose

@@ -22,10 +22,10 @@ class PoseEstimator {
     PoseEstimator(std::shared_ptr<const ViewGenerator> views, std::shared_ptr<const PoseSolver> solver,
                   const EstimatorOptions& options);
 
-    // Takes in one observation. `now_from_before` is the measured camera motion since the last update (it maps camera
-    // coordinates of the frame before to those of this one); nothing where it was not measured, and a transform that is
-    // not finite counts as that. Never throws for data. Where a view generator or solver throws, or memory is short,
-    // the exception passes on, and the estimator is as if the update had not been called.
+    // Takes in one observation. `now_from_before` is the camera's measured motion since the last update: it maps camera
+    // coordinates of the frame before to those of this one. Nothing, or a transform that is not finite: not measured.
+    // Never throws for data. Where a view generator or solver throws, or memory is short, the exception passes on, and
+    // the estimator is as before the call.
     UpdateResult update(const Observation& observation, const std::optional<Pose>& now_from_before);
 
     // Starts over: without a pose, or around one with a spread (standard deviations about the model's centre). Throws
@@ -33,8 +33,8 @@ class PoseEstimator {
     void reset();
     void reset(const Pose& camera_from_object, const Diffusion& spread);
 
-    // All that is carried from one observation to the next. It can be kept and put back: then the same observations
-    // give the same bits again, but for what a time budget has learned of the machine's speed.
+    // What is carried from one observation to the next. Put back, it gives the same bits for the same observations;
+    // only a time budget keeps what it has learned of the machine's speed.
     const Belief& belief() const { return belief_; }
     void restore(const Belief& belief) { belief_ = belief; }
 

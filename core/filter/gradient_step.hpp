@@ -28,7 +28,7 @@ struct GradientStep {
 
 // The refinement of a mode: the same on more rays, with a tolerance that shrinks.
 struct RefinementOptions {
-    int rounds = 5;                              // 0: the mode is weighed where it is
+    int rounds = 5;                              // 0, inside the estimator: weighed where it is
     int rounds_per_view = 2;                     // a view is cast anew every so many: one moves it less than its rays
     int max_rays = 6000;                         // of the view
     double first_extra_sigma_diameters = 0.006;  // added to the sensor's noise in the first round, halved every round

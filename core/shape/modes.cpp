@@ -9,6 +9,13 @@
 
 namespace nearpose {
 
+Mode unweighed_mode(const Pose& camera_from_object) {
+    Mode mode;
+    mode.camera_from_object = camera_from_object;
+    mode.cost = 1.0;
+    return mode;
+}
+
 bool same_mode(const Pose& a, const Pose& b, const Eigen::Vector3d& centre_in_object, const ModeDistance& distance) {
     return angle_between(a.rotation, b.rotation) < distance.rotation_rad &&
            (a * centre_in_object - b * centre_in_object).norm() < distance.translation_m;

@@ -18,6 +18,9 @@ struct Mode {
     Matrix6d covariance = Matrix6d::Zero();  // of the twist of camera_from_object * exp(twist), rotation first
 };
 
+// A pose whose cost is not known yet: the worst that a pixel cost has.
+Mode unweighed_mode(const Pose& camera_from_object);
+
 // Two poses closer than both are one mode.
 struct ModeDistance {
     double rotation_rad = 0.2;

@@ -29,7 +29,7 @@ void disambiguate(Choice& choice, Situation situation, const Frame& frame, Ledge
     }
     if (frame.method().hypotheses.alternatives > 0)
         for (const Mode& mode : best_alternatives({chosen}, situation, frame, ledger)) near.push_back(mode);
-    bring_to_one_representative(near, frame.model);
+    move_to_nearest_equivalents(near, frame.model);
     situation.window.around = chosen.camera_from_object;
     near = refine(near, situation, frame, ledger);
     const double shift = near.front().log_evidence - chosen.log_evidence;

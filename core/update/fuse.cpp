@@ -8,8 +8,7 @@
 namespace nearpose {
 namespace {
 
-// Noise is averaged over rays: so many more of them as it is larger, at the distance of what is seen, than the sensor's
-// at contact.
+// Noise is averaged over rays. Where the image is noisier than the sensor at contact, proportionally more are cast.
 int fit_rays(const Situation& situation, const Frame& frame) {
     const Method& method = frame.method();
     if (situation.phase != Phase::kTracking) return method.refinement.max_rays;
@@ -19,8 +18,8 @@ int fit_rays(const Situation& situation, const Frame& frame) {
         std::min<double>(method.refinement.max_rays, method.effort.fit_rays * std::max(1.0, noise)));
 }
 
-// Whether the image speaks for a fit at least as much as for the prediction that it contradicts, and says as much as
-// the image did in which the pose was accepted last.
+// Whether the evidence for a fit that contradicts the prediction is at least that for the prediction, and at least that
+// of the last accepted pose.
 bool outweighs_prediction(const Pose& fitted, const Pose& predicted, const StepContext& context, const Lock& lock,
                           const Situation& situation, const Method& method) {
     const auto evidence_for = [&](const Pose& pose) {
@@ -32,8 +31,8 @@ bool outweighs_prediction(const Pose& fitted, const Pose& predicted, const StepC
     return evidence * stride * stride >= lock.accepted_evidence && evidence >= evidence_for(predicted);
 }
 
-// Where fit and prediction contradict each other the object was moved, unless the image says less than before or less
-// for the fit: then the prediction stands.
+// Where fit and prediction contradict each other, the object was moved: the fit counts. Where its evidence is too
+// small, the prediction stands.
 Matrix6d correct(Belief& belief, const Choice& choice, const Situation& situation, const Frame& frame, Ledger& ledger) {
     const Pose& chosen = choice.mode.camera_from_object;
     const PixelGrid grid = ray_grid_to_fit(frame, chosen, fit_rays(situation, frame));

@@ -14,12 +14,12 @@ std::vector<Mode> modes_of(const MovedParticles& moved) {
     return modes;
 }
 
-// The particles' modes and the best hypotheses from pairs, in turns.
-std::vector<Mode> in_turns(const std::vector<Mode>& modes, const std::vector<Pose>& poses) {
+// The particles' modes and the best hypotheses from pairs, by turns.
+std::vector<Mode> interleaved(const std::vector<Mode>& modes, const std::vector<Pose>& poses) {
     std::vector<Mode> all;
     for (std::size_t k = 0; k < std::max(modes.size(), poses.size()); ++k) {
         if (k < modes.size()) all.push_back(modes[k]);
-        if (k < poses.size()) all.push_back({poses[k], 1.0, 0.0});
+        if (k < poses.size()) all.push_back(unweighed_mode(poses[k]));
     }
     return all;
 }
@@ -32,7 +32,7 @@ std::vector<Mode> preselect(const std::vector<Mode>& particles, const Situation&
     const Stopwatch watch;
     RefinementOptions refinement = situation.plan.refinement;
     refinement.rounds = std::min(refinement.rounds, options.rounds);
-    std::vector<Mode> modes = in_turns(frame.model.distinct(particles, options.tried), situation.best_from_pairs);
+    std::vector<Mode> modes = interleaved(frame.model.distinct(particles, options.tried), situation.best_from_pairs);
     const int count = ledger.affordable(Stage::kPreselection, static_cast<int>(modes.size()), 1);
     modes.resize(count);
     std::vector<RefinedMode> moved(modes.size());
@@ -61,10 +61,10 @@ std::vector<Mode> propose(const Belief& belief, const MovedParticles& moved, con
     const std::vector<Mode> particles = modes_of(moved);
     std::vector<Mode> leaders = found_anywhere && preselected ? preselect(particles, situation, frame, ledger)
                                                               : frame.model.distinct(particles, options.modes);
-    // Once a pose was verified, one hypothesis is enough for its mode: its prediction where the image agrees with it,
+    // Once a pose is established, one hypothesis is enough for its mode: its prediction where the image agrees with it,
     // else the particle that came nearest, as where the object moves.
-    const bool verified = situation.phase == Phase::kConfirming || situation.phase == Phase::kTracking;
-    const bool leads = verified && !leaders.empty() &&
+    const bool established = situation.phase == Phase::kConfirming || situation.phase == Phase::kTracking;
+    const bool leads = established && !leaders.empty() &&
                        frame.model.same_mode(leaders.front().camera_from_object, belief.tracked->camera_from_object);
     std::vector<Mode> modes;
     if (leads && !situation.prediction)
@@ -72,17 +72,17 @@ std::vector<Mode> propose(const Belief& belief, const MovedParticles& moved, con
     else if (belief.tracked)
         modes.push_back(*belief.tracked);
     if (leads) leaders.erase(leaders.begin());
-    if (belief.pose_before_loss) modes.push_back({*belief.pose_before_loss, 1.0, 0.0});
+    if (belief.pose_before_loss) modes.push_back(unweighed_mode(*belief.pose_before_loss));
     append(modes, leaders);
     if (!preselected)
-        for (const Pose& pose : situation.best_from_pairs) modes.push_back({pose, 1.0, 0.0});
+        for (const Pose& pose : situation.best_from_pairs) modes.push_back(unweighed_mode(pose));
     // A search everywhere tries those of the mode that it has chosen, see disambiguate.
     if (options.alternatives > 0 && alternatives_due(belief.lock, frame.method(), frame.step) && !found_anywhere) {
         const std::vector<Mode> alternatives = best_alternatives(modes, situation, frame, ledger);
         if (!modes.empty()) append(modes, near_symmetric_modes(modes.front(), frame.model.symmetries));
         append(modes, alternatives);
     }
-    bring_to_one_representative(modes, frame.model);
+    move_to_nearest_equivalents(modes, frame.model);
     return modes;
 }
 
@@ -120,7 +120,7 @@ std::vector<Mode> best_alternatives(const std::vector<Mode>& leaders, const Situ
     return frame.model.distinct(modes, options.alternatives_refined);
 }
 
-void bring_to_one_representative(std::vector<Mode>& modes, const ObjectModel& model) {
+void move_to_nearest_equivalents(std::vector<Mode>& modes, const ObjectModel& model) {
     if (model.symmetries.empty() || modes.empty()) return;
     const Pose reference = modes.front().camera_from_object;
     for (Mode& mode : modes)

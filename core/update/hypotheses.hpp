@@ -24,6 +24,6 @@ std::vector<Mode> best_alternatives(const std::vector<Mode>& leaders, const Situ
 
 // Replaces each pose of a symmetric part by the equivalent one that is nearest to the first: the estimate does not flip
 // between poses in which the part looks the same.
-void bring_to_one_representative(std::vector<Mode>& modes, const ObjectModel& model);
+void move_to_nearest_equivalents(std::vector<Mode>& modes, const ObjectModel& model);
 
 }  // namespace nearpose

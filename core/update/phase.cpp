@@ -23,8 +23,8 @@ bool search_due(const Lock& lock, const Method& method) {
     const RelocalisationOptions& options = method.relocalisation;
     if (method.hypotheses.modes == 0 || options.frames_contradicted == 0) return false;
     if (lock.frames_contradicted > 0) return lock.frames_contradicted % options.frames_contradicted == 0;
-    return lock.agrees_too_little && (lock.frames_unverified <= options.unverified_at_first ||
-                                      lock.frames_unverified % options.unverified_period == 0);
+    return lock.low_agreement && (lock.frames_low_agreement <= options.unverified_at_first ||
+                                  lock.frames_low_agreement % options.unverified_period == 0);
 }
 
 bool confirmed(const Lock& lock, const Method& method) {
@@ -69,6 +69,11 @@ Lock after_prediction(Lock lock, bool motion_measured, const ChoiceOptions& opti
     return lock;
 }
 
+Lock after_decision(Lock lock, Phase phase) {
+    lock.phase = phase;
+    return lock;
+}
+
 Lock after_choice(Lock lock, bool replaced, const std::optional<double>& alternatives_weight) {
     if (replaced) lock.alternatives_tried = false;
     lock.frames_unreplaced = replaced ? 0 : lock.frames_unreplaced + 1;
@@ -84,9 +89,9 @@ Lock after_assessment(Lock lock, const Assessment& assessment, const Method& met
     const bool accepted = assessment.verdict == Verdict::kAccept;
     lock.verified = assessment.verified;
     lock.frames_contradicted = assessment.agreement < limits.contradicted_below ? lock.frames_contradicted + 1 : 0;
-    if (accepted) lock.frames_unverified = 0;
-    lock.agrees_too_little = method.relocalisation.unverified && assessment.agreement < limits.min_agreement;
-    lock.frames_unverified += lock.agrees_too_little;
+    if (accepted) lock.frames_low_agreement = 0;
+    lock.low_agreement = method.relocalisation.unverified && assessment.agreement < limits.min_agreement;
+    lock.frames_low_agreement += lock.low_agreement;
     if (accepted && method.choice.accepted_evidence)
         lock.accepted_evidence = std::max(lock.accepted_evidence, assessment.evidence);
     return lock;

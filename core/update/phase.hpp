@@ -3,7 +3,7 @@
 //    searching: where may it be? <---------------------------------+
 //      |                                                           |
 //      | a pose was found                                          |  the image contradicts the pose,
-//      v                                                           |  or agrees too little with it
+//      v                                                           |  shows nothing of it, or agrees too little
 //    acquiring: which mode is right? ------------------------------+
 //      |   ^                                                       |
 //      |   | not verified any more, or an alternative is left      |
@@ -38,19 +38,20 @@ const char* to_string(Phase phase);
 struct Lock {
     Phase phase = Phase::kSearching;   // of the last frame that showed enough
     bool verified = false;             // the last estimate passed every test of the verdict but that of its precision
-    bool agrees_too_little = false;    // the last estimate's agreement was too low to be verified
+    bool low_agreement = false;        // the last estimate's agreement was too low to be verified
     bool alternatives_tried = false;   // since the tracked mode was last replaced
     double alternatives_weight = 0.0;  // their share of the probability when they were last tried, in 0..1
     int frames_unreplaced = 0;         // in a row, since the tracked mode was last replaced
-    int frames_contradicted = 0;       // in a row whose estimate contradicts what is seen
-    int frames_unverified = 0;         // with too little agreement, since a pose was last accepted
-    // Evidence of the image for the last accepted pose, fading from frame to frame; 0 where the arm's motion is not
-    // known [nats times image pixels a ray].
+    int frames_contradicted = 0;       // in a row in which the image contradicts the estimate, or shows nothing of it
+    int frames_low_agreement = 0;      // with too little agreement, since a pose was last accepted
+    // Evidence of the image for the last accepted pose; it fades from frame to frame, and is 0 where the arm's motion
+    // is not known. [nats * squared ray spacing in pixels], which does not depend on how many rays were cast.
     double accepted_evidence = 0.0;
 };
 
-// Whether the object is to be searched for anew although there is a pose: where the image contradicts the pose, and,
-// at first and then now and then, where it agrees too little. A model that is not quite the part never agrees enough.
+// Whether the object is to be searched for anew although there is a pose. So it is after a frame that contradicts the
+// pose or shows nothing of it. It also is where the agreement is too low, but only in the first such frames and then
+// periodically: a model that is not quite the part never agrees enough.
 bool search_due(const Lock& lock, const Method& method);
 
 // A confirmed track: not replaced for a while, told from its alternatives by the image, and not contradicted.
@@ -74,9 +75,11 @@ struct Plan {
 };
 Plan plan_of(Phase phase, const Method& method, bool predicted);
 
-// The frame's effect on the record, in this order.
+// How a frame changes the record, in this order.
 //   prediction: evidence fades, since what was accepted may have been moved; all of it where no motion was measured
 Lock after_prediction(Lock lock, bool motion_measured, const ChoiceOptions& options);
+//   decision on the phase
+Lock after_decision(Lock lock, Phase phase);
 //   choice of a mode: `alternatives_weight` only where all alternatives were tried
 Lock after_choice(Lock lock, bool replaced, const std::optional<double>& alternatives_weight);
 //   assessment; `agreement` is 0 where nothing is seen, `evidence` that of an accepted pose

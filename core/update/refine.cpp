@@ -42,8 +42,8 @@ RefinedMode evaluate_prediction(const Pose& predicted, const Situation& situatio
 }
 
 void gate_prediction(Situation& situation, const Belief& predicted, const Frame& frame, Ledger& ledger) {
-    const bool verified = situation.phase == Phase::kConfirming || situation.phase == Phase::kTracking;
-    if (!verified || !(predicted.lock.accepted_evidence > 0.0)) return;
+    const bool established = situation.phase == Phase::kConfirming || situation.phase == Phase::kTracking;
+    if (!established || !(predicted.lock.accepted_evidence > 0.0)) return;
     const RefinedMode prediction = evaluate_prediction(predicted.tracked->camera_from_object, situation, frame, ledger);
     const bool agrees = prediction.agreement >= frame.method().verification.min_agreement;
     if (agrees) situation.prediction = prediction;

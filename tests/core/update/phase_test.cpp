@@ -56,17 +56,17 @@ TEST(Phase, FollowsFromTheRecordOfTheFramesBefore) {
         {"contradicted by the image", changed([](Lock& l) { l.frames_contradicted = 1; }), true, Phase::kSearching},
         {"contradicted for long", changed([](Lock& l) { l.frames_contradicted = 7; }), true, Phase::kSearching},
         {"agrees too little, at first",
-         changed([](Lock& l) { l.agrees_too_little = true, l.verified = false, l.frames_unverified = 4; }), true,
+         changed([](Lock& l) { l.low_agreement = true, l.verified = false, l.frames_low_agreement = 4; }), true,
          Phase::kSearching},
         {"agrees too little, later", changed([](Lock& l) {
-             l.agrees_too_little = true, l.verified = false, l.frames_unverified = 5, l.frames_unreplaced = 0;
+             l.low_agreement = true, l.verified = false, l.frames_low_agreement = 5, l.frames_unreplaced = 0;
          }),
          true, Phase::kAcquiring},
         {"agrees too little, later, and the track is confirmed",
-         changed([](Lock& l) { l.agrees_too_little = true, l.verified = false, l.frames_unverified = 5; }), true,
+         changed([](Lock& l) { l.low_agreement = true, l.verified = false, l.frames_low_agreement = 5; }), true,
          Phase::kTracking},
         {"agrees too little, now and then",
-         changed([](Lock& l) { l.agrees_too_little = true, l.verified = false, l.frames_unverified = 32; }), true,
+         changed([](Lock& l) { l.low_agreement = true, l.verified = false, l.frames_low_agreement = 32; }), true,
          Phase::kSearching},
     };
     for (const Row& row : table)
@@ -160,19 +160,19 @@ TEST(Lock, CountsWhatContradictsAndWhatIsUnverified) {
     const Method method = method_default();
     Lock lock = after_assessment(Lock{}, {Verdict::kLost, false, 0.0, 0.0}, method);
     EXPECT_EQ(lock.frames_contradicted, 1);
-    EXPECT_EQ(lock.frames_unverified, 1);
+    EXPECT_EQ(lock.frames_low_agreement, 1);
     lock = after_assessment(lock, {Verdict::kContinue, false, 0.79, 0.0}, method);
     EXPECT_EQ(lock.frames_contradicted, 2);
     lock = after_assessment(lock, {Verdict::kContinue, false, 0.81, 9.0}, method);
     EXPECT_EQ(lock.frames_contradicted, 0) << "agrees in part";
-    EXPECT_EQ(lock.frames_unverified, 3);
-    EXPECT_TRUE(lock.agrees_too_little);
+    EXPECT_EQ(lock.frames_low_agreement, 3);
+    EXPECT_TRUE(lock.low_agreement);
     EXPECT_EQ(lock.accepted_evidence, 0.0) << "was not accepted";
     lock = after_assessment(lock, {Verdict::kContinue, true, 0.95, 9.0}, method);
-    EXPECT_FALSE(lock.agrees_too_little);
-    EXPECT_EQ(lock.frames_unverified, 3) << "counts since a pose was accepted";
+    EXPECT_FALSE(lock.low_agreement);
+    EXPECT_EQ(lock.frames_low_agreement, 3) << "counts since a pose was accepted";
     lock = after_assessment(lock, {Verdict::kAccept, true, 0.95, 9.0}, method);
-    EXPECT_EQ(lock.frames_unverified, 0);
+    EXPECT_EQ(lock.frames_low_agreement, 0);
     EXPECT_EQ(lock.accepted_evidence, 9.0);
     lock = after_assessment(lock, {Verdict::kAccept, true, 0.95, 5.0}, method);
     EXPECT_EQ(lock.accepted_evidence, 9.0) << "more is not undone by less";
