@@ -102,7 +102,7 @@ void PoseEstimator::reset(const Pose& camera_from_object, const Diffusion& sprea
     reset();
     belief_.particles = sample_around(camera_from_object, spread, model_->extent(), options_.num_particles,
                                       options_.seed, belief_.step);
-    belief_.tracked = Mode{camera_from_object, 1.0, 0.0};
+    belief_.tracked = mode_at(camera_from_object);
 }
 
 }  // namespace nearpose

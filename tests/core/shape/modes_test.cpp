@@ -37,10 +37,10 @@ TEST(Modes, RivalsTurnAboutTheCentreOrShiftAlongAnAxisAndAreNeverThePoseItself) 
     const ModelExtent extent{{-0.1, 0.0, 0.2}, {0.3, 0.2, 0.5}};
     const Eigen::Vector3d centre = extent.centre_in_object();
     const Pose pose{Eigen::Quaterniond(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitX())), {0, 0, 1}};
-    const auto rivals = alternatives_of(pose, extent, 200, 1, 1);
-    ASSERT_EQ(rivals.size(), 200U);
+    const auto alternatives = alternatives_of(pose, extent, 200, 1, 1);
+    ASSERT_EQ(alternatives.size(), 200U);
     int half_turns = 0, pure_shifts = 0;
-    for (const Pose& rival : rivals) {
+    for (const Pose& rival : alternatives) {
         const double angle = angle_between(pose.rotation, rival.rotation);
         const double quarters = angle / (M_PI / 2.0);
         EXPECT_NEAR(quarters, std::round(quarters), 1e-9);
