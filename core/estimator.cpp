@@ -108,7 +108,7 @@ void PoseEstimator::reset(const Pose& camera_from_object, const Diffusion& sprea
     Belief belief = knowing_nothing(belief_.step);
     belief.particles =
         sample_around(camera_from_object, spread, model_->extent(), options_.num_particles, options_.seed, belief.step);
-    belief.tracked = unweighed_mode(camera_from_object);
+    belief.tracked = mode_at(camera_from_object);
     belief_ = std::move(belief);
 }
 

@@ -1,10 +1,10 @@
 #include "apps/estimate/frame_log.hpp"
 
-#include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <nlohmann/json.hpp>
+
+#include "core/filter/particles.hpp"
 
 namespace nearpose::program {
 namespace {
@@ -86,21 +86,6 @@ void append_rounded(std::string& text, double value) {
     text.append(digits.data(), end.ptr);
 }
 
-// p ~ exp(-w), of sum 1, computed about the smallest w.
-std::vector<double> probabilities(const std::vector<double>& weights) {
-    if (weights.empty()) return {};
-    const double best = *std::min_element(weights.begin(), weights.end());
-    std::vector<double> shares;
-    double sum = 0.0;
-    for (const double weight : weights) {
-        const double share = std::exp(best - weight);
-        shares.push_back(std::isfinite(share) ? share : 0.0);
-        sum += shares.back();
-    }
-    for (double& share : shares) share /= std::max(sum, 1e-300);
-    return shares;
-}
-
 // Text from file names need not be UTF-8.
 std::string dump(const Json& object) {
     return object.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -147,7 +132,7 @@ std::string first_particles_line() {
 }
 
 std::string particles_line(int frame_id, const ParticleSet& particles) {
-    const std::vector<double> shares = probabilities(particles.negative_log_weights);
+    const std::vector<double> shares = posterior_probabilities(particles.negative_log_weights);
     std::string line = "{\"frame\":" + std::to_string(frame_id) + ",\"particles\":[";
     for (std::size_t i = 0; i < particles.poses.size(); ++i) {
         const Pose& pose = particles.poses[i];

@@ -12,7 +12,8 @@ PixelGrid grid_over(const PixelBox& box, int max_pixels) {
     if (width <= 0 || height <= 0 || max_pixels < 1) return {};
     const double pixels = static_cast<double>(width) * height;
     const int stride = std::max(1, static_cast<int>(std::ceil(std::sqrt(pixels / max_pixels))));
-    // Half a stride in from the edge, so that each grid pixel stands in the middle of the square that it speaks for.
+    // Half a stride in from the edge, so that each grid pixel stands in the middle of the square of pixels that it
+    // represents.
     return {box.first_u + (stride - 1) / 2, box.first_v + (stride - 1) / 2, stride, std::max(1, width / stride),
             std::max(1, height / stride)};
 }

@@ -1,6 +1,6 @@
 // Rigid transforms and their Lie group SE(3).
 //
-// Conventions, stated once and tested in tests/core/pose_test.cpp:
+// Conventions, stated once and tested in tests/core/base/pose_test.cpp:
 //   - a transform is named target_from_source: point_in_camera = camera_from_object * point_in_object;
 //   - a twist is (rotation [rad], translation [m]), rotation first;
 //   - a perturbation acts on the right: pose * exp(twist), that is, in the source's (the object's) axes.

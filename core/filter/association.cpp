@@ -34,15 +34,15 @@ Correspondences select(const Correspondences& pairs, const std::vector<char>& ke
 }
 
 // The rigid motion of three pairs; false where the triple is too flat to define one.
-bool motion_of_triple(const Correspondences& pairs, const int (&triple)[3], Eigen::Isometry3d& camera_from_object) {
+bool motion_of_triple(const Correspondences& pairs, const int (&triple)[3], double min_sine,
+                      Eigen::Isometry3d& camera_from_object) {
     Eigen::Matrix3d model, measured;
     for (int c = 0; c < 3; ++c) {
         model.col(c) = pairs.points_in_object[triple[c]].cast<double>();
         measured.col(c) = pairs.points_in_camera[triple[c]].cast<double>();
     }
     const Eigen::Vector3d a = model.col(1) - model.col(0), b = model.col(2) - model.col(0);
-    constexpr double kMinSine = 0.05;  // a sliver's motion turns about its long side
-    if (!(a.cross(b).norm() > kMinSine * a.norm() * b.norm())) return false;
+    if (!(a.cross(b).norm() > min_sine * a.norm() * b.norm())) return false;
     camera_from_object.matrix() = Eigen::umeyama(model, measured, false);
     return camera_from_object.matrix().allFinite();
 }
@@ -115,7 +115,7 @@ Correspondences reject_by_sample_consensus(const Correspondences& pairs, const S
     for (int draw = 0; draw < options.draws; ++draw) {
         const int triple[3] = {random.below(count), random.below(count), random.below(count)};
         Eigen::Isometry3d motion;
-        if (!motion_of_triple(pairs, triple, motion)) continue;
+        if (!motion_of_triple(pairs, triple, options.min_sine, motion)) continue;
         const Eigen::Isometry3f camera_from_object = motion.cast<float>();
         int supporters = 0;
         for (int k = 0; k < count; ++k) {

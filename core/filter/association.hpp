@@ -29,6 +29,7 @@ Correspondences reject_by_normal(const Correspondences& pairs, const Pose& camer
 struct SampleConsensusOptions {
     int draws = 10;                // triples tried (the paper's source notes 10)
     double max_distance_m = 0.01;  // a pair within it under a triple's motion supports that triple
+    double min_sine = 0.05;  // of the angle in a triple; the motion of a sliver is not defined about its long side
 };
 
 // Keeps the pairs that the best of `draws` random triples supports: each triple gives one rigid motion (Umeyama 1991).

@@ -115,6 +115,7 @@ void validate(const RefinementOptions& options, const std::string& name) {
     check_option(name + ".rounds_per_view", options.rounds_per_view, 1, 100);
     check_option(name + ".max_rays", options.max_rays, 1, 1e7);
     check_option(name + ".first_extra_sigma_diameters", options.first_extra_sigma_diameters, 0.0, 1.0);
+    check_option(name + ".extra_sigma_decay", options.extra_sigma_decay, 0.0, 1.0);
     check_option(name + ".gate_sigmas", options.gate_sigmas, 0.1, 1e3);
     check_option(name + ".cost_sigma_diameters", options.cost_sigma_diameters, 0.0, 1.0);
     check_option(name + ".rays_per_evidence", options.rays_per_evidence, 1.0, 1e6);
@@ -171,7 +172,7 @@ RefinedMode refine_mode(const Pose& camera_from_object, const StepContext& conte
         step.max_distance_diameters = options.gate_sigmas * (step.extra_sigma_diameters + sensor_m / diameter_m);
         if (round % options.rounds_per_view == 0) view = cast(sharper, at);
         solve(find_pairs(view, sharper, unused, at), sharper, at);
-        step.extra_sigma_diameters *= 0.5;
+        step.extra_sigma_diameters *= options.extra_sigma_decay;
     }
     RefinedMode refined;
     {

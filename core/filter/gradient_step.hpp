@@ -11,6 +11,7 @@
 
 namespace nearpose {
 
+// How a view's points find measured ones, see association.hpp.
 enum class Association { kNearest, kProjective };
 
 // The gradient step of one particle: a few rounds of correspondence and least squares.
@@ -23,7 +24,7 @@ struct GradientStep {
     double consensus_distance_diameters = 0.02;
     int rounds = 3;          // 0: the pose is weighed where it is
     double step_size = 1.0;  // gamma: the fraction of each solve that is taken, along the geodesic
-    int max_rays = 768;      // of the view
+    int max_rays = 400;      // of the view
 };
 
 // The refinement of a mode: the same on more rays, with a tolerance that shrinks.
@@ -31,10 +32,11 @@ struct RefinementOptions {
     int rounds = 5;                              // 0, inside the estimator: weighed where it is
     int rounds_per_view = 2;                     // a view is cast anew every so many: one moves it less than its rays
     int max_rays = 6000;                         // of the view
-    double first_extra_sigma_diameters = 0.006;  // added to the sensor's noise in the first round, halved every round
+    double first_extra_sigma_diameters = 0.006;  // added to the sensor's noise in the first round
+    double extra_sigma_decay = 0.5;              // of that noise, from round to round
     double gate_sigmas = 5.0;                    // a pair farther apart is not of the same surface
-    double cost_sigma_diameters = 0.002;         // tolerance of the cost that decides between modes
-    bool outline = true;                         // a face that is coplanar with its surroundings is no object
+    double cost_sigma_diameters = 0.002;         // added to the sensor's noise in the cost that modes are compared by
+    bool outline = true;                         // as PixelCostOptions::with_outline
     double rays_per_evidence = 10.0;             // neighbouring rays share errors: so many count as one
 };
 
@@ -101,15 +103,15 @@ struct StepContext {
 };
 
 // The paper's inner loop: generate the view at the pose, then `rounds` times associate, reject, solve and move by gamma
-// towards the solution; then weigh. For the pixel cost the view is cast again, so that the cost is that of the pose
-// which is kept. `random` is used by the sample consensus.
+// towards the solution; then weigh. For the pixel cost the view is cast again, so that the cost belongs to the pose
+// that is kept. `random` is used by the sample consensus.
 MovedParticle move_particle(const Pose& camera_from_object, const StepContext& context, const RandomStream& random);
 
 // Takes a mode to its minimum: as move_particle, but the view is cast anew every `rounds_per_view` rounds, pairs are
-// projective, and the noise added to the sensor's halves from round to round.
+// projective, and the noise added to the sensor's shrinks from round to round.
 RefinedMode refine_mode(const Pose& camera_from_object, const StepContext& context, const RefinementOptions& options);
 
-// The pixels' verdicts on a refined pose.
+// The pixel cost by which refined poses are compared, with its counts.
 PixelCost refined_cost(const Pose& camera_from_object, const StepContext& context, const RefinementOptions& options);
 
 }  // namespace nearpose

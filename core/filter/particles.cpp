@@ -7,24 +7,6 @@
 #include "core/base/random.hpp"
 
 namespace nearpose {
-namespace {
-
-// exp(-w) up to a common factor, summing to one. Weights that are not finite count as impossible; if all are, or none
-// differs, the probabilities are equal.
-std::vector<double> probabilities(const std::vector<double>& weights) {
-    const int best = map_index(weights);
-    std::vector<double> p(weights.size(), 0.0);
-    double sum = 0.0;
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-        if (std::isfinite(weights[i])) p[i] = std::exp(weights[best] - weights[i]);
-        sum += p[i];
-    }
-    for (double& value : p) value = sum > 0.0 ? value / sum : 1.0 / static_cast<double>(weights.size());
-    return p;
-}
-
-}  // namespace
-
 void propagate(ParticleSet& particles, const Pose& now_from_before) {
     for (Pose& pose : particles.poses) pose = now_from_before * pose;
 }
@@ -46,16 +28,29 @@ void update_weights(ParticleSet& particles, const std::vector<double>& negative_
         particles.negative_log_weights[i] = 0.5 * (particles.negative_log_weights[i] + negative_log_likelihoods[i]);
 }
 
-double effective_sample_size(const std::vector<double>& weights) {
+std::vector<double> posterior_probabilities(const std::vector<double>& negative_log_weights) {
+    const int best = map_index(negative_log_weights);
+    std::vector<double> p(negative_log_weights.size(), 0.0);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        if (std::isfinite(negative_log_weights[i]))
+            p[i] = std::exp(negative_log_weights[best] - negative_log_weights[i]);
+        sum += p[i];
+    }
+    for (double& value : p) value = sum > 0.0 ? value / sum : 1.0 / static_cast<double>(p.size());
+    return p;
+}
+
+double effective_sample_size(const std::vector<double>& negative_log_weights) {
     double sum_of_squares = 0.0;
-    for (const double p : probabilities(weights)) sum_of_squares += p * p;
+    for (const double p : posterior_probabilities(negative_log_weights)) sum_of_squares += p * p;
     return sum_of_squares > 0.0 ? 1.0 / sum_of_squares : 0.0;
 }
 
 ParticleSet systematic_resample(const ParticleSet& particles, int count, std::uint64_t seed, std::uint64_t step) {
     const int size = particles.size();
     if (size == 0) return particles;
-    const std::vector<double> p = probabilities(particles.negative_log_weights);
+    const std::vector<double> p = posterior_probabilities(particles.negative_log_weights);
     const double offset = RandomStream(seed, step, 0, RandomPurpose::kResampling).uniform();
     ParticleSet resampled;
     resampled.poses.reserve(count);
@@ -80,11 +75,12 @@ int kld_sample_size(int num_cells, double max_error) {
     return static_cast<int>(std::ceil(k / (2.0 * max_error) * root * root * root));
 }
 
-int map_index(const std::vector<double>& weights) {
+int map_index(const std::vector<double>& negative_log_weights) {
     int best = -1;
-    for (std::size_t i = 0; i < weights.size(); ++i)
-        if (!std::isnan(weights[i]) && (best < 0 || weights[i] < weights[best])) best = static_cast<int>(i);
-    return best < 0 && !weights.empty() ? 0 : best;
+    for (std::size_t i = 0; i < negative_log_weights.size(); ++i)
+        if (!std::isnan(negative_log_weights[i]) && (best < 0 || negative_log_weights[i] < negative_log_weights[best]))
+            best = static_cast<int>(i);
+    return best < 0 && !negative_log_weights.empty() ? 0 : best;
 }
 
 }  // namespace nearpose

@@ -38,20 +38,23 @@ void diffuse(ParticleSet& particles, const Diffusion& diffusion, const Eigen::Ve
 // halving keeps it in range and forgets the past at a rate of one half a frame.
 void update_weights(ParticleSet& particles, const std::vector<double>& negative_log_likelihoods);
 
-// 1 / sum(p_i^2) over the normalised probabilities p_i ~ exp(-w_i), in 1..N; computed about the smallest w, so that
-// nothing under- or overflows. 0 for an empty set.
-double effective_sample_size(const std::vector<double>& weights);
+// p_i ~ exp(-w_i), of sum 1; computed about the smallest w, so that nothing under- or overflows. A weight that is not
+// finite counts as impossible. Where all are so, the probabilities are equal.
+std::vector<double> posterior_probabilities(const std::vector<double>& negative_log_weights);
+
+// 1 / sum(p_i^2) over these probabilities, in 1..N. 0 for an empty set.
+double effective_sample_size(const std::vector<double>& negative_log_weights);
 
 // Systematic resampling (one uniform draw, `count` even pointers): particle i is taken count * p_i times, rounded up or
 // down. Weights of the copies become equal (0).
 ParticleSet systematic_resample(const ParticleSet& particles, int count, std::uint64_t seed, std::uint64_t step);
 
-// KLD sampling: so many particles keep the Kullback-Leibler distance between the swarm and a posterior that fills
-// `num_cells` cells below `max_error` with 99 % probability (Fox 2003, the Wilson-Hilferty approximation of the
-// chi-square quantile). 0 for a single cell, which any number describes.
+// KLD sampling (Fox 2003): with so many particles the Kullback-Leibler distance between them and a posterior that fills
+// `num_cells` cells stays below `max_error` with 99 % probability. The chi-square quantile is approximated after Wilson
+// and Hilferty. 0 for a single cell, which any number of particles describes.
 int kld_sample_size(int num_cells, double max_error);
 
-// Index of the smallest weight, the first of equals; -1 for an empty set.
-int map_index(const std::vector<double>& weights);
+// Index of the smallest negative log-weight, the first of equals; -1 for an empty set.
+int map_index(const std::vector<double>& negative_log_weights);
 
 }  // namespace nearpose

@@ -6,7 +6,8 @@ namespace nearpose {
 // Axial noise of a structured-light or stereo sensor grows with the square of the distance (the disparity's error is
 // constant). On top of it every real sensor has errors that neighbouring pixels share: a smooth field over the image
 // and a wrong scale. Averaging over pixels does not remove them, and a covariance that ignores them is far too small;
-// they are unknowns beside the pose (see fine_fit.hpp). The defaults are wide enough for the usual depth cameras.
+// they are unknowns beside the pose (see core/fit/joint_fit.hpp). The defaults are wide enough for the usual depth
+// cameras.
 struct SensorModel {
     double sigma_floor_m = 0.0005;            // axial noise at contact [m]
     double sigma_per_square_metre = 0.0015;   // axial noise per squared distance [m / m^2]
@@ -14,9 +15,9 @@ struct SensorModel {
     double systematic_sigma_m = 0.0005;       // of the smooth error field [m]
     double systematic_length_pixels = 40.0;   // over which pixels share it [pixels of the image]
     double systematic_fine_sigma_m = 0.0005;  // of what is shared over a quarter of that length [m]
-    double depth_scale_sigma = 0.003;         // all depths are too long by this part of themselves, or too short
-    // What part of these errors' standard deviations is explained away by them when a pose is fitted. The errors of CAD
-    // and of edges look like them, and a fit that may explain all by the sensor follows the smallest features.
+    double depth_scale_sigma = 0.003;         // of the relative error that all depths share
+    // By these fractions of their standard deviations the errors are free in the joint fit. Errors of the CAD and of
+    // edges look like them, and a fit that may explain everything by the sensor follows the smallest features.
     double systematic_fitted = 0.5;
     double scale_fitted = 0.17;
     double min_range_m = 0.03;  // nearer measurements are none [m]
@@ -27,7 +28,7 @@ struct SensorModel {
 
     // Variance of the distance between a measured point and the surface's plane, along its normal: the axial noise
     // counts with the cosine of its angle to the normal, the lateral one with the sine [m^2]. `axial_m` is
-    // sigma_m(depth_m) times what the image at hand is noisier; `normal_z` the normal's component along the optical
+    // Observation::sigma_m(depth_m); `normal_z` the normal's component along the optical
     // axis.
     double variance_along_normal_m2(double axial_m, double depth_m, double normal_z, double focal_pixels) const {
         const double lateral_m = lateral_sigma_pixels * depth_m / focal_pixels;

@@ -9,13 +9,6 @@
 
 namespace nearpose {
 
-Mode unweighed_mode(const Pose& camera_from_object) {
-    Mode mode;
-    mode.camera_from_object = camera_from_object;
-    mode.cost = 1.0;
-    return mode;
-}
-
 bool same_mode(const Pose& a, const Pose& b, const Eigen::Vector3d& centre_in_object, const ModeDistance& distance) {
     return angle_between(a.rotation, b.rotation) < distance.rotation_rad &&
            (a * centre_in_object - b * centre_in_object).norm() < distance.translation_m;
@@ -46,22 +39,22 @@ void set_weights(std::vector<Mode>& modes) {
 }
 
 std::vector<Pose> alternatives_of(const Pose& camera_from_object, const ModelExtent& extent, int count,
-                                  std::uint64_t seed, std::uint64_t step) {
+                                  std::uint64_t seed, std::uint64_t step, const AlternativeOptions& options) {
     RandomStream random(seed, step, 0, RandomPurpose::kAlternatives);
     const Eigen::Vector3d size_m = extent.box_max_in_object - extent.box_min_in_object;
-    std::vector<Pose> rivals;
+    std::vector<Pose> alternatives;
     for (int k = 0; k < count; ++k) {
         Twist change = Twist::Zero();
         const int turn_axis = random.below(4);  // 3: no turn
-        const int quarters = 1 + random.below(3);
-        if (turn_axis < 3) change[turn_axis] = quarters * M_PI / 2.0;
+        const int steps = 1 + random.below(options.steps_per_turn - 1);
+        if (turn_axis < 3) change[turn_axis] = steps * 2.0 * M_PI / options.steps_per_turn;
         const int shift_axis = random.below(4);  // 3: no shift
-        const double shift = random.uniform(-0.5, 0.5);
+        const double shift = random.uniform(-options.max_shift, options.max_shift);
         if (shift_axis < 3) change[3 + shift_axis] = shift * size_m[shift_axis];
         if (turn_axis == 3 && shift_axis == 3) change[3 + k % 3] = shift * size_m[k % 3];  // never the pose itself
-        rivals.push_back(perturb_about(camera_from_object, change, extent.centre_in_object()));
+        alternatives.push_back(perturb_about(camera_from_object, change, extent.centre_in_object()));
     }
-    return rivals;
+    return alternatives;
 }
 
 }  // namespace nearpose

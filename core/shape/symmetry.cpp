@@ -82,7 +82,7 @@ Pose nearest_equivalent(const Pose& camera_from_object, const Pose& reference, c
         const Eigen::Vector3d centre = ball_centre(symmetries);
         return {reference.rotation, camera_from_object * centre - reference.rotation * centre};
     }
-    // Of nearly equal ones the first stays, so that the answer for the answer is the same.
+    // Among nearly equal ones the first stays: applied to its own result the function changes nothing.
     constexpr double kEqual_rad = 1e-9, kEqual_m = 1e-12;
     const auto distance_m = [&](const Pose& pose) {
         return (pose * centre_in_object - reference * centre_in_object).norm();

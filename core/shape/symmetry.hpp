@@ -14,13 +14,13 @@ struct AxisOfRevolution {
     Eigen::Vector3d offset_in_object_m = Eigen::Vector3d::Zero();  // a point of the axis
 };
 
-// The part looks the same after every product of a discrete turn and turns about the axes of revolution; of discrete
-// turns that such turns make equal one is listed.
+// The part looks the same after every product of a discrete turn and turns about the axes of revolution. Where turns
+// about these axes make discrete turns equal, one of them is listed.
 struct Symmetries {
     std::vector<Pose> discrete;  // object_from_object; the identity is not listed
     std::vector<AxisOfRevolution> continuous;
-    std::vector<Pose>
-        near_symmetries;  // turns after which all but a detail is the same: what the part may be mistaken for
+    // object_from_object: turns after which all but a detail looks the same, so that one pose is mistaken for another.
+    std::vector<Pose> near_symmetries;
 
     bool empty() const { return discrete.empty() && continuous.empty(); }
 };
@@ -38,7 +38,7 @@ bool contains(const Symmetries& symmetries, const Pose& turn);
 // All products of `generators`, without the identity and each once, as long as there are at most `max_count`.
 std::vector<Pose> closed_under_products(const std::vector<Pose>& generators, int max_count);
 
-// Of all poses in which the part looks as in `camera_from_object` the one nearest to `reference`: by the angle between
+// The pose nearest to `reference` among all in which the part looks as in `camera_from_object`: by the angle between
 // the rotations, then by the distance of the centres.
 Pose nearest_equivalent(const Pose& camera_from_object, const Pose& reference, const Symmetries& symmetries,
                         const Eigen::Vector3d& centre_in_object);

@@ -49,7 +49,7 @@ Choice choose_map(const MovedParticles& moved, const Frame& frame) {
     const int best = map_index(moved.particles.negative_log_weights);
     Choice choice;
     choice.seen = true;
-    choice.mode = Mode{moved.particles.poses[best], moved.costs[best], 0.0};
+    choice.mode = mode_at(moved.particles.poses[best], moved.costs[best]);
     const double sigma_m = frame.observation.sensor().sigma_m(frame.observation.mean_distance_m());
     choice.score = frame.method().cost == Cost::kPixels ? std::clamp(1.0 - choice.mode.cost, 0.0, 1.0)
                                                         : 1.0 / (1.0 + choice.mode.cost / (sigma_m * sigma_m));

@@ -10,7 +10,7 @@ namespace {
 
 std::vector<Mode> modes_of(const MovedParticles& moved) {
     std::vector<Mode> modes;
-    for (int i = 0; i < moved.particles.size(); ++i) modes.push_back({moved.particles.poses[i], moved.costs[i], 0.0});
+    for (int i = 0; i < moved.particles.size(); ++i) modes.push_back(mode_at(moved.particles.poses[i], moved.costs[i]));
     return modes;
 }
 
@@ -19,7 +19,7 @@ std::vector<Mode> interleaved(const std::vector<Mode>& modes, const std::vector<
     std::vector<Mode> all;
     for (std::size_t k = 0; k < std::max(modes.size(), poses.size()); ++k) {
         if (k < modes.size()) all.push_back(modes[k]);
-        if (k < poses.size()) all.push_back(unweighed_mode(poses[k]));
+        if (k < poses.size()) all.push_back(mode_at(poses[k]));
     }
     return all;
 }
@@ -40,7 +40,7 @@ std::vector<Mode> preselect(const std::vector<Mode>& particles, const Situation&
         const Pose& pose = modes[k].camera_from_object;
         const ObservedGrid observed = observe(frame.observation, ray_grid_on_model(frame, pose, options.rays));
         moved[k] = refine_mode(pose, frame.context(observed, frame.method().step), refinement);
-        modes[k] = {moved[k].camera_from_object, -moved[k].gain * observed.grid.stride * observed.grid.stride, 0.0};
+        modes[k] = mode_at(moved[k].camera_from_object, -moved[k].gain * observed.grid.stride * observed.grid.stride);
     });
     for (const RefinedMode& mode : moved) ledger.add(mode.counts, mode.seconds);
     ledger.budget.took(Stage::kPreselection, count, watch.elapsed_s());
@@ -72,10 +72,10 @@ std::vector<Mode> propose(const Belief& belief, const MovedParticles& moved, con
     else if (belief.tracked)
         modes.push_back(*belief.tracked);
     if (leads) leaders.erase(leaders.begin());
-    if (belief.pose_before_loss) modes.push_back(unweighed_mode(*belief.pose_before_loss));
+    if (belief.pose_before_loss) modes.push_back(mode_at(*belief.pose_before_loss));
     append(modes, leaders);
     if (!preselected)
-        for (const Pose& pose : situation.best_from_pairs) modes.push_back(unweighed_mode(pose));
+        for (const Pose& pose : situation.best_from_pairs) modes.push_back(mode_at(pose));
     // A search everywhere tries those of the mode that it has chosen, see disambiguate.
     if (options.alternatives > 0 && alternatives_due(belief.lock, frame.method(), frame.step) && !found_anywhere) {
         const std::vector<Mode> alternatives = best_alternatives(modes, situation, frame, ledger);

@@ -14,7 +14,7 @@ int particles_wanted(const Belief& belief, const Frame& frame) {
     std::vector<Mode> likely;
     for (int i = 0; i < particles.size(); ++i)
         if (particles.negative_log_weights[i] < best + effort.far_less_likely_nats)
-            likely.push_back({particles.poses[i], particles.negative_log_weights[i], 0.0});
+            likely.push_back(mode_at(particles.poses[i], particles.negative_log_weights[i]));
     const std::vector<Mode> cells = frame.model.distinct(likely, particles.size());
     const int size = kld_sample_size(static_cast<int>(cells.size()), effort.kld_error);
     const int least = frame.now_from_before ? effort.min_particles : effort.min_particles_unmeasured;
