@@ -33,18 +33,18 @@ TEST(Modes, DistanceIsMeasuredAtTheCentreNotAtTheOrigin) {
     EXPECT_FALSE(same_mode(a, b, Eigen::Vector3d::Zero(), {0.2, 0.02}));
 }
 
-TEST(Modes, RivalsTurnAboutTheCentreOrShiftAlongAnAxisAndAreNeverThePoseItself) {
+TEST(Modes, AlternativesTurnAboutTheCentreOrShiftAlongAnAxisAndAreNeverThePoseItself) {
     const ModelExtent extent{{-0.1, 0.0, 0.2}, {0.3, 0.2, 0.5}};
     const Eigen::Vector3d centre = extent.centre_in_object();
     const Pose pose{Eigen::Quaterniond(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitX())), {0, 0, 1}};
     const auto alternatives = alternatives_of(pose, extent, 200, 1, 1);
     ASSERT_EQ(alternatives.size(), 200U);
     int half_turns = 0, pure_shifts = 0;
-    for (const Pose& rival : alternatives) {
-        const double angle = angle_between(pose.rotation, rival.rotation);
+    for (const Pose& alternative : alternatives) {
+        const double angle = angle_between(pose.rotation, alternative.rotation);
         const double quarters = angle / (M_PI / 2.0);
         EXPECT_NEAR(quarters, std::round(quarters), 1e-9);
-        const Eigen::Vector3d shift = pose.inverse() * (rival * centre) - centre;
+        const Eigen::Vector3d shift = pose.inverse() * (alternative * centre) - centre;
         EXPECT_LE((shift.array().abs() > 1e-12).count(), 1) << "along one axis at most";
         for (int axis = 0; axis < 3; ++axis)
             EXPECT_LE(std::abs(shift[axis]), 0.5 * (extent.box_max_in_object - extent.box_min_in_object)[axis] + 1e-12);
