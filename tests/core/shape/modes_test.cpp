@@ -33,7 +33,7 @@ TEST(Modes, DistanceIsMeasuredAtTheCentreNotAtTheOrigin) {
     EXPECT_FALSE(same_mode(a, b, Eigen::Vector3d::Zero(), {0.2, 0.02}));
 }
 
-TEST(Modes, RivalsTurnAboutTheCentreOrShiftAlongAnAxisAndAreNeverThePoseItself) {
+TEST(Modes, AlternativesTurnAboutTheCentreOrShiftAlongAnAxisAndAreNeverThePoseItself) {
     const ModelExtent extent{{-0.1, 0.0, 0.2}, {0.3, 0.2, 0.5}};
     const Eigen::Vector3d centre = extent.centre_in_object();
     const Pose pose{Eigen::Quaterniond(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitX())), {0, 0, 1}};
