@@ -18,8 +18,8 @@ int fit_rays(const Situation& situation, const Frame& frame) {
         std::min<double>(method.refinement.max_rays, method.effort.fit_rays * std::max(1.0, noise)));
 }
 
-// Whether the evidence for a fit that contradicts the prediction is at least that for the prediction, and at least that
-// of the last accepted pose.
+// Whether a fit that contradicts the prediction is to be believed: its evidence must not be less than that for the
+// prediction, nor than that of the last accepted pose.
 bool outweighs_prediction(const Pose& fitted, const Pose& predicted, const StepContext& context, const Lock& lock,
                           const Situation& situation, const Method& method) {
     const auto evidence_for = [&](const Pose& pose) {

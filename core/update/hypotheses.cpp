@@ -24,8 +24,8 @@ std::vector<Mode> interleaved(const std::vector<Mode>& modes, const std::vector<
     return all;
 }
 
-// The particles' modes and the best hypotheses from pairs that explain most of the image, each after some refinement on
-// few rays where it puts the object. Before that a wrong one may score better than the right one.
+// The particles' modes and the hypotheses from pairs that explain most of the image. Each is refined a little first, on
+// few rays where it puts the object: before that a wrong one may score better than the right one.
 std::vector<Mode> preselect(const std::vector<Mode>& particles, const Situation& situation, const Frame& frame,
                             Ledger& ledger) {
     const PreselectionOptions& options = frame.method().preselection;
