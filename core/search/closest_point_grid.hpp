@@ -1,19 +1,21 @@
-// The model's surface on a voxel grid: which point of it is nearest, in one look-up. Measured points are compared with
-// it and pulled onto it without casting a view; what the sensor sees through is not noticed here.
+// The model's surface on a voxel grid: which of its points is nearest, in one look-up. Hypotheses are scored and
+// aligned with it without casting a view. It holds no free space: that the sensor looked through the model is not
+// noticed here.
 #pragma once
 
 #include <vector>
 
-#include "core/search/sampling.hpp"
+#include "core/search/oriented_point.hpp"
+#include "core/search/search_options.hpp"
 
 namespace nearpose {
 
 class ClosestPointGrid {
   public:
-    // Looks at the model from all around.
-    explicit ClosestPointGrid(const ViewGenerator& views);
+    explicit ClosestPointGrid(const ViewGenerator& views, const ClosestPointGridOptions& options = {});
 
-    // The sampled point of the surface that is nearest, to within a voxel; null farther than about reach_m from it.
+    // The sampled point of the surface (in the object's frame) that is nearest, to within a voxel; null farther than
+    // about reach_m() from it.
     const OrientedPoint* nearest(const Eigen::Vector3f& point_in_object) const {
         const Eigen::Vector3f at = (point_in_object - origin_in_object_) * voxels_per_m_;
         if (!(at.minCoeff() >= 0.0F)) return nullptr;
@@ -30,25 +32,29 @@ class ClosestPointGrid {
     std::size_t index_of(const Eigen::Vector3i& voxel) const {
         return (static_cast<std::size_t>(voxel.z()) * size_.y() + voxel.y()) * size_.x() + voxel.x();
     }
-    void put_in(const std::vector<OrientedPoint>& surface);
-    void spread(int rounds);
+    void insert(const std::vector<OrientedPoint>& surface);
+    void propagate(int rounds);
+    void take_nearest_of_neighbours(const Eigen::Vector3i& voxel, const std::vector<int>& before);
 
-    std::vector<OrientedPoint> samples_;  // at most one for each voxel
-    std::vector<int> voxels_;             // of samples_; -1: none near
-    Eigen::Vector3f origin_in_object_ = Eigen::Vector3f::Zero();
-    Eigen::Vector3d centre_in_object_;
+    std::vector<OrientedPoint> samples_;                          // in the object's frame, at most one for each voxel
+    std::vector<int> voxels_;                                     // each an index into samples_; -1: none is near
+    Eigen::Vector3f origin_in_object_ = Eigen::Vector3f::Zero();  // the grid's corner
+    Eigen::Vector3d centre_in_object_;                            // of the model's box
     Eigen::Vector3i size_ = Eigen::Vector3i::Zero();
     float voxels_per_m_ = 0.0F;
     double reach_m_ = 0.0;
 };
 
-// Share of the measured points (with their normals, in camera coordinates) that lie on the model's surface to within
-// the tolerance, in 0..1; of the first `count`.
-double inlier_share_on(const ClosestPointGrid& field, const Pose& camera_from_object,
-                       const std::vector<OrientedPoint>& measured, std::size_t count, double tolerance_m);
+// Share in 0..1 of the first `count` measured points (in camera coordinates) that lie on the model's surface: within
+// the tolerance of it, with about the same normal.
+double inlier_share(const ClosestPointGrid& grid, const Pose& camera_from_object,
+                    const std::vector<OrientedPoint>& measured, std::size_t count, double tolerance_m,
+                    const InlierOptions& options = {});
 
-// camera_from_object after `rounds` point-to-plane steps that pull the measured points onto the model's surface.
-Pose aligned_to_surface(const ClosestPointGrid& field, const Pose& camera_from_object,
-                        const std::vector<OrientedPoint>& measured, int rounds, double tolerance_m);
+// camera_from_object after `rounds` of point-to-plane ICP (Chen and Medioni 1992) that align the measured points (in
+// camera coordinates) with the model's surface.
+Pose align_to_surface(const ClosestPointGrid& grid, const Pose& camera_from_object,
+                      const std::vector<OrientedPoint>& measured, int rounds, double tolerance_m,
+                      const AlignmentOptions& options = {});
 
 }  // namespace nearpose

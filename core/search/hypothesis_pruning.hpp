@@ -1,4 +1,5 @@
-// Screening of many guessed poses before any view is cast: from all, weighed at a glance, to the few that are wanted.
+// Pruning of many pose hypotheses before any view is cast: all are scored coarsely, fewer and fewer of them more
+// closely, until as many are left as are wanted.
 #pragma once
 
 #include <vector>
@@ -8,39 +9,38 @@
 
 namespace nearpose {
 
+// A pose with two scores. Close up the share of the measured points says more, among other things that of the model's.
 struct PoseHypothesis {
     Pose camera_from_object;
-    double share = 0.0;  // of the measured points that lie on the model, in 0..1; tells close up. 0: no pose
-    double gain = 0.0;   // of the model's points, see evidence_gain; tells a part among other things
+    double inlier_share = 0.0;  // of the measured points that lie on the model, in 0..1; 0: the hypothesis is dropped
+    double model_score = 0.0;   // see model_score
 };
 
-// What all hypotheses are held against.
-struct PruningScene {
-    const ClosestPointGrid& surface;
+// What all hypotheses are compared with.
+struct PruningContext {
+    const ClosestPointGrid& surface;  // the model's
     const SurfelGrid& surfels;
     const PinholeCamera& camera;
-    std::vector<OrientedPoint> measured;  // balanced_sample of the surfels
-    std::vector<OrientedPoint> model;     // some of its surface; empty: the share alone decides
-    double tolerance_m = 0.0;             // within which model and depth agree, as a start
+    std::vector<OrientedPoint> measured;  // in camera coordinates: a systematic_sample of the surfels
+    std::vector<OrientedPoint> model;     // in the object's frame: some of its points; none: inlier_share alone decides
+    double tolerance_m = 0.0;             // within which model and depth agree at first
     double diameter_m = 0.0;              // of the model
     int num_threads = 1;
+    PruningOptions options = {};
 };
 
-// About `count` of the measured oriented points, as often as they tell something: a plane that fills the view gives
-// few. The first ones are spread over the image as all are.
-std::vector<OrientedPoint> balanced_sample(const SurfelGrid& surfels, std::size_t count);
+// Support less penalty (compare Papazov and Burschka 2010) of those of the first `count` points of the model that face
+// the camera. A point within the tolerance of the measured surface adds to it, one before it, where the sensor looked
+// through it, takes away from it. Each counts with the cosine of its slope. Support also counts with the surfel's
+// evidence weight, a penalty more where the point lies deep in free space. Occluded points count nothing.
+double model_score(const PruningContext& context, const Pose& camera_from_object, std::size_t count,
+                   double tolerance_m);
 
-// How many more of the model's points (the first `count`) that face the camera lie within the tolerance of the measured
-// surface than lie before it, where the sensor looked through them; each counts with the cosine of its slope and, where
-// it agrees, with the weight of the surfel. Those deep before it count up to three times, those behind something say
-// nothing: they may be hidden.
-double evidence_gain(const PruningScene& scene, const Pose& camera_from_object, std::size_t count, double tolerance_m);
+// Both scores by few points, in about a microsecond.
+PoseHypothesis score_coarsely(const PruningContext& context, const Pose& camera_from_object);
 
-// A first look, which costs a microsecond.
-PoseHypothesis coarsely_scored(const PruningScene& scene, const Pose& camera_from_object);
-
-// The fewer are left, the closer each is looked at, and those that are near the object are pulled onto it on the way.
-// Best by share and best by gain in turns, at most one from each coarse cell of poses; `count` or fewer.
-std::vector<Pose> prune(std::vector<PoseHypothesis> hypotheses, const PruningScene& scene, int count);
+// The best hypotheses after the stages of the options, which also align them with the model's surface; `count` or
+// fewer. They are taken by both scores in turns, best first, at most one from each coarse cell of poses.
+std::vector<Pose> prune_hypotheses(std::vector<PoseHypothesis> hypotheses, const PruningContext& context, int count);
 
 }  // namespace nearpose

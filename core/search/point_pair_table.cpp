@@ -1,77 +1,60 @@
 #include "core/search/point_pair_table.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/search/surfels.hpp"
 
 namespace nearpose {
-namespace {
 
-constexpr int kDistanceCells = 10, kAngleCells = 18;  // 10 degrees
-constexpr int kMaxPairAnchors = 1000;                 // their pairs are a million
-
-// Which of the cells of equal angle a cosine lies in. Cosines come in bins so narrow that each meets at most one border
-// of the cells: a look-up instead of an arc cosine.
-class AngleCells {
-  public:
-    AngleCells() {
-        for (int cell = 0; cell < kAngleCells; ++cell)
-            smallest_cosine_[cell] = static_cast<float>(std::cos(M_PI * (cell + 1) / kAngleCells));
-        for (int bin = 0, cell = kAngleCells - 1; bin < kBins; ++bin) {
-            const float largest = static_cast<float>(bin + 1) / kBinsPerUnit - 1.0F;
-            while (cell > 0 && largest > smallest_cosine_[cell - 1]) --cell;
-            cell_at_largest_[bin] = cell;
-        }
+AngleCells::AngleCells(int count)
+    : count_(count), smallest_cosine_(static_cast<std::size_t>(count)), cell_at_largest_(kBins) {
+    for (int cell = 0; cell < count; ++cell)
+        smallest_cosine_[cell] = static_cast<float>(std::cos(M_PI * (cell + 1) / count));
+    for (int bin = 0, cell = count - 1; bin < kBins; ++bin) {
+        const float largest = static_cast<float>(bin + 1) / kBinsPerUnit - 1.0F;
+        while (cell > 0 && largest > smallest_cosine_[cell - 1]) --cell;
+        cell_at_largest_[bin] = cell;
     }
-    int operator()(float cosine) const {
-        const int bin = std::clamp(static_cast<int>((cosine + 1.0F) * kBinsPerUnit), 0, kBins - 1);
-        const int cell = cell_at_largest_[bin];
-        return std::min(kAngleCells - 1, cell + (cosine < smallest_cosine_[cell] ? 1 : 0));
-    }
-
-  private:
-    static constexpr float kBinsPerUnit = 128.0F;
-    static constexpr int kBins = 256;
-    std::array<float, kAngleCells> smallest_cosine_{};
-    std::array<int, kBins> cell_at_largest_{};  // of a bin's largest cosine
-};
-
-int angle_cell(float cosine) {
-    static const AngleCells kCells;
-    return kCells(cosine);
 }
 
-}  // namespace
+int AngleCells::operator()(float cosine) const {
+    const int bin = std::clamp(static_cast<int>((cosine + 1.0F) * kBinsPerUnit), 0, kBins - 1);
+    const int cell = cell_at_largest_[bin];
+    return std::min(count_ - 1, cell + (cosine < smallest_cosine_[cell] ? 1 : 0));
+}
 
-PointPairTable::PointPairTable(const ViewGenerator& views)
-    : points_(sample_surface(views)),
-      surface_(views),
+PointPairTable::PointPairTable(const ViewGenerator& views, const SearchOptions& options)
+    : options_(options.point_pair_table),
+      angle_cells_(options_.angle_cells),
+      points_(sample_surface(views, options.surface_points)),
+      surface_(views, options.closest_point_grid),
       diameter_m_(views.extent().diameter_m()),
-      cells_(static_cast<std::size_t>(kDistanceCells) * kAngleCells * kAngleCells * kAngleCells) {
+      cells_(static_cast<std::size_t>(options_.distance_cells) * angle_cells_.count() * angle_cells_.count() *
+             angle_cells_.count()) {
     const int count = static_cast<int>(points_.size());
-    const int every = std::max(1, count / kMaxPairAnchors);
+    const int every = std::max(1, count / options_.max_points);
     for (int i = 0; i < count; i += every) {
         for (int j = 0; j < count; j += every) {
             const int cell = i == j ? -1 : cell_of(points_[i], points_[j]);
             if (cell >= 0) cells_[cell].push_back({i, j});
         }
     }
-    largest_face_m2_ = largest_face(points_, 0.02 * diameter_m_);
+    largest_face_m2_ = largest_face(points_, options_.face.tolerance_diameters * diameter_m_, options_.face);
 }
 
 int PointPairTable::cell_of(const OrientedPoint& first, const OrientedPoint& second) const {
     const Eigen::Vector3f line = second.point - first.point;
     const double distance = line.norm();
-    const double place = (distance / diameter_m_ - kMinDistance) / (kMaxDistance - kMinDistance);
+    const double place = (distance / diameter_m_ - options_.min_distance_diameters) /
+                         (options_.max_distance_diameters - options_.min_distance_diameters);  // in 0..1
     if (!(place >= 0.0 && place < 1.0)) return -1;
     const Eigen::Vector3f direction = line / static_cast<float>(distance);
-    const int angles =
-        (angle_cell(first.normal.dot(direction)) * kAngleCells + angle_cell(second.normal.dot(direction))) *
-            kAngleCells +
-        angle_cell(first.normal.dot(second.normal));
-    return static_cast<int>(place * kDistanceCells) * kAngleCells * kAngleCells * kAngleCells + angles;
+    int cell = static_cast<int>(place * options_.distance_cells);
+    for (const float cosine :
+         {first.normal.dot(direction), second.normal.dot(direction), first.normal.dot(second.normal)})
+        cell = cell * angle_cells_.count() + angle_cells_(cosine);
+    return cell;
 }
 
 const std::vector<PointPairTable::Pair>& PointPairTable::matches(const OrientedPoint& first,

@@ -31,20 +31,20 @@ ParticleSet sample_around(const Pose& camera_from_object, const Diffusion& sprea
     return particles;
 }
 
-ParticleSet sample_on_surface(const Observation& observation, const std::vector<OrientedPoint>& points, int count,
+ParticleSet sample_on_surface(const Observation& observation, const std::vector<OrientedPoint>& model, int count,
                               std::uint64_t seed, std::uint64_t step, std::uint64_t first_stream) {
     std::vector<int> oriented;  // measured points whose normal is known
     for (std::size_t p = 0; p < observation.normals_in_camera().size(); ++p)
         if (!observation.normals_in_camera()[p].isZero()) oriented.push_back(static_cast<int>(p));
     ParticleSet particles;
-    if (points.empty() || oriented.empty()) return particles;
+    if (model.empty() || oriented.empty()) return particles;
     for (int i = 0; i < count; ++i) {
         RandomStream random(seed, step, first_stream + static_cast<std::uint64_t>(i), RandomPurpose::kStart);
         const int measured = oriented[random.below(static_cast<int>(oriented.size()))];
-        const OrientedPoint& point_of_model = points[random.below(static_cast<int>(points.size()))];
-        particles.poses.push_back(pose_aligning(
-            point_of_model, {observation.points_in_camera()[measured], observation.normals_in_camera()[measured]},
-            random.uniform(0.0, 2.0 * M_PI)));
+        const OrientedPoint& point = model[random.below(static_cast<int>(model.size()))];
+        particles.poses.push_back(
+            pose_aligning(point, {observation.points_in_camera()[measured], observation.normals_in_camera()[measured]},
+                          random.uniform(0.0, 2.0 * M_PI)));
     }
     particles.negative_log_weights.assign(particles.poses.size(), 0.0);
     return particles;

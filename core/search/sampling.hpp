@@ -1,4 +1,4 @@
-// Where the particles start.
+// Initial particles: drawn around the observed object, around a given pose, or on the observed surface.
 #pragma once
 
 #include <cstdint>
@@ -11,24 +11,25 @@
 
 namespace nearpose {
 
-// The paper's start: viewpoints on a sphere around the observed object, its radius the cloud's mean distance, all
-// orientations and rolls. That is, the model's box centre lies on the ray to the cloud's centroid at that distance, in
-// a uniformly random orientation. Particle i draws from the stream (seed, step, i). `observation` must hold points.
+// The paper's initialisation: viewpoints on a sphere around the observed object, with all rolls. The sphere's radius is
+// the mean distance of the measured points. So the model's box centre lies on the ray to their centroid, at that
+// distance, in a uniformly random orientation. Particle i draws from the stream (seed, step, i). `observation` must
+// hold points.
 ParticleSet sample_on_sphere(const Observation& observation, const ModelExtent& extent, int count, std::uint64_t seed,
                              std::uint64_t step);
 
-// Around a given pose, with the given spread about the model's centre; particle 0 is the pose itself.
+// Around a given pose, with the given spread about the model's centre. Particle 0 is the pose itself.
 ParticleSet sample_around(const Pose& camera_from_object, const Diffusion& spread, const ModelExtent& extent, int count,
                           std::uint64_t seed, std::uint64_t step);
 
-// The start for a partial view: a random point_of_model of the model is laid on a random measured point, normal on
-// normal, with a random turn about it. Needs no object centre, which a close camera does not see. Particle i draws from
-// the stream (seed, step, first_stream + i). Empty where there are no points or no measured normals.
-ParticleSet sample_on_surface(const Observation& observation, const std::vector<OrientedPoint>& points, int count,
+// For a partial view: a random point of the model is aligned with a random measured point, normal on normal, with a
+// random turn about the normal. Needs no object centre, which a close camera does not see. Particle i draws from the
+// stream (seed, step, first_stream + i). Empty where the model has no points, or nothing shows a normal.
+ParticleSet sample_on_surface(const Observation& observation, const std::vector<OrientedPoint>& model, int count,
                               std::uint64_t seed, std::uint64_t step, std::uint64_t first_stream);
 
-// Moves `camera_from_object` so that the centroid of the surface that a view of it shows lies on the observed cloud's:
-// the model's origin, its box centre and the seen surface may be decimetres apart.
+// Shifts `camera_from_object` so that the centroid of the surface seen in a view of it lies on that of the measured
+// points. The model's origin, its box centre and the seen surface may be decimetres apart.
 Pose shift_to_seen_surface(const Pose& camera_from_object, const Observation& observation, const ViewGenerator& views,
                            const PinholeCamera& view_camera);
 

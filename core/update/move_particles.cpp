@@ -16,7 +16,7 @@ ObservedGrid observe_weighted(const PixelGrid& grid, const Window& window, const
     for (int index = 0; index < grid.size(); ++index) {
         const int pixel = grid.image_v(index) * observation.camera().width + grid.image_u(index);
         const Surfel* surfel = window.surfels->at(observation.camera(), pixel);
-        observed.weights.push_back(surfel == nullptr ? 1.0F : static_cast<float>(surfel->weight));
+        observed.weights.push_back(surfel == nullptr ? 1.0F : static_cast<float>(surfel->evidence_weight));
     }
     return observed;
 }

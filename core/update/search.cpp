@@ -11,44 +11,53 @@
 namespace nearpose {
 namespace {
 
-// Hypotheses from pairs of oriented points: `count` candidates, a share of which these are. None without a table of
-// pairs.
+// Candidates from pairs of oriented points: up to their share of `count`. None without a table of pairs.
 ParticleSet sample_on_pairs(Situation& situation, int count, int draws, const Frame& frame) {
     ParticleSet particles;
     if (!situation.window.surfels) return particles;
+    const SearchOptions& options = frame.method().search;
     const PreselectionOptions& preselection = frame.method().preselection;
     const int kept = preselection.tried > 0 ? preselection.tried : preselection.kept;
     const bool segmented = frame.observation.segmented();
-    const PairSearchOptions options{(segmented ? 1 : frame.method().search.draws_factor_unsegmented) * draws,
-                                    segmented ? count / 2 : 2 * count / 3, static_cast<std::uint64_t>(count),
-                                    frame.options.num_threads};
+    const double share = segmented ? options.pair_share_segmented : options.pair_share_unsegmented;
+    const PairDraws wanted{.draws = (segmented ? 1 : options.draws_factor_unsegmented) * draws,
+                           .count = static_cast<int>(count * share),
+                           .first_stream = static_cast<std::uint64_t>(count),
+                           .num_threads = frame.options.num_threads};
     particles.poses = hypotheses_from_pairs(frame.observation, *frame.model.point_pairs, *situation.window.surfels,
-                                            options, frame.options.seed, frame.step);
+                                            options, wanted, frame.options.seed, frame.step);
     const auto first = particles.poses.begin();
     if (!segmented) situation.best_from_pairs.assign(first, first + std::min(kept, particles.size()));
     return particles;
 }
 
-// A whole object in view is found from the centroid of what is seen, a part of one from its surface, and one among
-// other things from pairs of oriented points: a share of the candidates each. Where nothing is segmented there is no
-// centroid to go by. Empty if no surface shows a normal.
-ParticleSet sample_where_surfaces_meet(Situation& situation, int count, int draws, const Frame& frame) {
+// Candidates on the paper's sphere, shifted so that what is seen of each lies on what is measured.
+ParticleSet sample_on_shifted_sphere(int count, const Frame& frame) {
     const Observation& observation = frame.observation;
-    const EstimatorOptions& options = frame.options;
+    const SearchOptions& options = frame.method().search;
+    ParticleSet particles = sample_on_sphere(observation, frame.model.extent(), count, frame.options.seed, frame.step);
+    const PixelGrid grid = ray_grid(frame, std::nullopt, options.step.max_rays);
+    const PinholeCamera coarse = camera_of(grid, observation.camera());
+    parallel_for(count, frame.options.num_threads, [&](int i) {
+        for (int shift = 0; shift < options.sphere_shifts; ++shift)
+            particles.poses[i] = shift_to_seen_surface(particles.poses[i], observation, *frame.model.views, coarse);
+    });
+    return particles;
+}
+
+// A share of the candidates each for three cases. Among other things the object is found from pairs of oriented points.
+// A whole one in view is found from the centroid of what is seen, which says nothing where no object is segmented. A
+// part of one is found from its surface. Empty if no surface shows a normal.
+ParticleSet sample_from_all(Situation& situation, int count, int draws, const Frame& frame) {
+    const Observation& observation = frame.observation;
     ParticleSet particles = sample_on_pairs(situation, count, draws, frame);
     const int left = count - particles.size();
-    const int on_sphere = observation.segmented() ? left / 2 : 0;
-    ParticleSet centred = sample_on_sphere(observation, frame.model.extent(), on_sphere, options.seed, frame.step);
-    const PixelGrid grid = ray_grid(frame, std::nullopt, frame.method().search.step.max_rays);
-    const PinholeCamera coarse = camera_of(grid, observation.camera());
-    parallel_for(on_sphere, options.num_threads, [&](int i) {
-        for (int round = 0; round < 2; ++round)  // the first shift changes what is seen
-            centred.poses[i] = shift_to_seen_surface(centred.poses[i], observation, *frame.model.views, coarse);
-    });
+    const int on_sphere = observation.segmented() ? static_cast<int>(left * frame.method().search.sphere_share) : 0;
+    const ParticleSet centred = sample_on_shifted_sphere(on_sphere, frame);
     const std::vector<OrientedPoint>& surface =
         frame.model.point_pairs ? frame.model.point_pairs->points() : frame.model.surface_points;
     const ParticleSet on_surface =
-        sample_on_surface(observation, surface, left - on_sphere, options.seed, frame.step, on_sphere);
+        sample_on_surface(observation, surface, left - on_sphere, frame.options.seed, frame.step, on_sphere);
     particles.poses.insert(particles.poses.end(), centred.poses.begin(), centred.poses.end());
     particles.poses.insert(particles.poses.end(), on_surface.poses.begin(), on_surface.poses.end());
     return particles;
@@ -77,7 +86,7 @@ ParticleSet search(Situation& situation, const Frame& frame, Ledger& ledger) {
     const EstimatorOptions& options = frame.options;
     if (frame.model.point_pairs) {
         situation.window.surfels = std::make_shared<const SurfelGrid>(
-            surfels_of(frame.observation, *frame.model.point_pairs, options.seed, frame.step));
+            surfels_of(frame.observation, *frame.model.point_pairs, method, options.seed, frame.step));
     }
     const Stopwatch watch;
     const int wanted = std::max(method.candidates, options.num_particles);
@@ -85,8 +94,7 @@ ParticleSet search(Situation& situation, const Frame& frame, Ledger& ledger) {
         ledger.affordable(Stage::kSearch, wanted, method.least_candidates);  // the next search tries others
     const auto draws = static_cast<int>(static_cast<double>(method.draws) * count / wanted);
     ParticleSet particles;
-    if (method.initialisation != Initialisation::kSphere)
-        particles = sample_where_surfaces_meet(situation, count, draws, frame);
+    if (method.initialisation != Initialisation::kSphere) particles = sample_from_all(situation, count, draws, frame);
     if (particles.size() == 0)
         particles = sample_on_sphere(frame.observation, frame.model.extent(), count, options.seed, frame.step);
     if (method.candidates > 0) particles.poses = best_candidates(particles.poses, situation.window, frame, ledger);

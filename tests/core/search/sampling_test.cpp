@@ -20,7 +20,7 @@ Observation observe_part() {
     return make_observation(image, kCamera, mask);
 }
 
-TEST(Start, SphereHasTheCloudsMeanDistanceAsRadiusAndAllOrientations) {
+TEST(Sampling, SphereHasTheMeanDistanceAsRadiusAndAllOrientations) {
     const Observation observation = observe_part();
     const ParticleSet particles = sample_on_sphere(observation, kPart.extent(), 2000, 1, 1);
     ASSERT_EQ(particles.size(), 2000);
@@ -35,7 +35,7 @@ TEST(Start, SphereHasTheCloudsMeanDistanceAsRadiusAndAllOrientations) {
     EXPECT_LT((outer - Eigen::Matrix3d::Identity() / 3.0).norm(), 0.05);
 }
 
-TEST(Start, AroundAPoseKeepsThePoseItself) {
+TEST(Sampling, AroundAPoseKeepsThePoseItself) {
     const ParticleSet particles = sample_around(kTruth, {0.1, 0.01}, kPart.extent(), 500, 1, 1);
     EXPECT_EQ(angle_between(particles.poses[0].rotation, kTruth.rotation), 0.0);
     double sum2 = 0.0;
@@ -46,25 +46,25 @@ TEST(Start, AroundAPoseKeepsThePoseItself) {
     EXPECT_NEAR(std::sqrt(sum2), 0.1 * std::sqrt(3.0), 0.015);
 }
 
-TEST(Start, AnchorsLieOnTheSurfaceWithOutwardNormalsOnAllSides) {
+TEST(Sampling, OrientedPointsLieOnTheSurfaceWithOutwardNormalsOnAllSides) {
     const auto points = sample_surface(kPart);
     ASSERT_GT(points.size(), 500U);
     std::array<int, 6> sides{};
-    for (const OrientedPoint& point_of_model : points) {
-        // A step outwards is seen from there: the ray back hits the surface at that point.
-        const Eigen::Vector3d eye = (point_of_model.point + 0.001F * point_of_model.normal).cast<double>();
+    for (const OrientedPoint& oriented : points) {
+        // A small step along an outward normal leaves the part.
+        const Eigen::Vector3d eye = (oriented.point + 0.001F * oriented.normal).cast<double>();
         bool inside = false;
         for (const test::Box& box : test::asymmetric_part())
             inside |= (eye.array() > box.min.array()).all() && (eye.array() < box.max.array()).all();
         EXPECT_FALSE(inside);
         int axis = 0;
-        point_of_model.normal.cwiseAbs().maxCoeff(&axis);
-        ++sides[2 * axis + (point_of_model.normal[axis] > 0)];
+        oriented.normal.cwiseAbs().maxCoeff(&axis);
+        ++sides[2 * axis + (oriented.normal[axis] > 0)];
     }
     for (const int side : sides) EXPECT_GT(side, 50);
 }
 
-TEST(Start, SurfaceStartsLayAnAnchorOnAMeasuredPointNormalOnNormal) {
+TEST(Sampling, OnSurfaceAlignsAPointWithAMeasuredOneNormalOnNormal) {
     const Observation observation = observe_part();
     const std::vector<OrientedPoint> one = {{{0.1F, 0.02F, 0.01F}, {1, 0, 0}}};
     for (const Pose& pose : sample_on_surface(observation, one, 50, 1, 1, 0).poses) {
@@ -79,7 +79,7 @@ TEST(Start, SurfaceStartsLayAnAnchorOnAMeasuredPointNormalOnNormal) {
     EXPECT_EQ(sample_on_surface(observation, {}, 50, 1, 1, 0).size(), 0);
 }
 
-TEST(Start, ShiftLaysTheSeenSurfaceOnTheMeasuredOne) {
+TEST(Sampling, ShiftBringsTheSeenSurfaceOntoTheMeasuredOne) {
     const Observation observation = observe_part();
     Pose off = kTruth;
     off.translation += Eigen::Vector3d(0.02, -0.03, 0.06);
