@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/check.hpp"
+#include "core/base/statistics.hpp"
 
 namespace nearpose {
 namespace {
@@ -169,7 +170,7 @@ const PointIndex& Observation::index() const {
 void Observation::measure_noise() {
     constexpr int kReach = 3;  // pixels: neighbours share noise
     constexpr std::size_t kMinSamples = 100;
-    constexpr double kMedianOfNormal = 0.6745, kLeast = 0.5, kMost = 10.0;
+    constexpr double kLeast = 0.5, kMost = 10.0;
     std::vector<double> ratios;
     const int stride = std::max(1, static_cast<int>(std::sqrt(num_candidates_ / 3000.0)));
     for (int v = candidate_box_.first_v; v < candidate_box_.last_v; v += stride) {
@@ -185,9 +186,7 @@ void Observation::measure_noise() {
         }
     }
     if (ratios.size() < kMinSamples) return;
-    const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-    std::nth_element(ratios.begin(), middle, ratios.end());
-    noise_factor_ = std::clamp(*middle / kMedianOfNormal, kLeast, kMost);
+    noise_factor_ = std::clamp(median(std::move(ratios)) / kMedianOfAbsoluteNormal, kLeast, kMost);
 }
 
 ObservedGrid observe(const Observation& observation, const PixelGrid& grid) {
