@@ -6,7 +6,7 @@ namespace nearpose {
 // Axial noise of a structured-light or stereo sensor grows with the square of the distance (the disparity's error is
 // constant). On top of it every real sensor has errors that neighbouring pixels share: a smooth field over the image
 // and a wrong scale. Averaging over pixels does not remove them, and a covariance that ignores them is far too small;
-// they are unknowns beside the pose (see fine_fit.hpp). The defaults are wide enough for the usual depth cameras.
+// they are unknowns beside the pose (see joint_fit.hpp). The defaults are wide enough for the usual depth cameras.
 struct SensorModel {
     double sigma_floor_m = 0.0005;            // axial noise at contact [m]
     double sigma_per_square_metre = 0.0015;   // axial noise per squared distance [m / m^2]
@@ -21,6 +21,9 @@ struct SensorModel {
     double scale_fitted = 0.17;
     double min_range_m = 0.03;  // nearer measurements are none [m]
     double max_range_m = 5.0;   // farther measurements are none [m]
+
+    // Over which pixels share the fine errors [pixels of the image].
+    double fine_length_pixels() const { return 0.25 * systematic_length_pixels; }
 
     // Standard deviation of one pixel's depth along the optical axis, for a surface seen face on [m].
     double sigma_m(double depth_m) const { return sigma_floor_m + sigma_per_square_metre * depth_m * depth_m; }
