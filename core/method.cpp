@@ -52,6 +52,8 @@ void validate(const PixelCostOptions& options) {
     check_option("pixel_cost.occluded_cost", options.occluded_cost, 0.0, 1.0);
     check_option("pixel_cost.unexplained_cost", options.unexplained_cost, 0.0, 1.0);
     check_option("pixel_cost.outline_cost", options.outline_cost, 0.0, 100.0);
+    check_option("pixel_cost.outline_gate_sigmas", options.outline_gate_sigmas, 0.0, 100.0);
+    check_option("pixel_cost.outline_steps", options.outline_steps, 1, 100);
     check_option("pixel_cost.independent_rays", options.independent_rays, 0.0, 1e6);
 }
 
@@ -117,6 +119,8 @@ void validate(const Method& method) {
     validate(method.preselection);
     validate(method.refinement, "refinement");
     validate(method.choice);
+    validate(method.fit);
+    validate(method.track);
     validate(method.verification);
     validate(method.relocalisation);
     validate(method.effort);

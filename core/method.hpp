@@ -6,6 +6,8 @@
 #include "core/evidence/likelihood.hpp"
 #include "core/evidence/verdict.hpp"
 #include "core/filter/gradient_step.hpp"
+#include "core/fit/joint_fit.hpp"
+#include "core/fit/track.hpp"
 #include "core/search/search_options.hpp"
 #include "core/shape/modes.hpp"
 
@@ -98,6 +100,8 @@ struct Method {
     RefinementOptions refinement;
     ChoiceOptions choice;
     bool fusion = true;  // the chosen mode is fitted jointly with the sensor's errors and fused with the track
+    FitOptions fit;
+    TrackOptions track;
     VerificationOptions verification;
     RelocalisationOptions relocalisation;
     AdaptiveEffort effort;

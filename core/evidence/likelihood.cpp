@@ -20,70 +20,51 @@ double overlap_scaled_mse(const Correspondences& pairs, const Pose& camera_from_
 }
 
 double negative_log_likelihood(double overlap_scaled_mse_m2, double sensor_sigma_m, double max_distance_m) {
+    // 3/5 R^2 is the mean squared distance from the centre of points spread evenly over a ball of radius R.
     const double variance_m2 = sensor_sigma_m * sensor_sigma_m + 0.6 * max_distance_m * max_distance_m;
     return overlap_scaled_mse_m2 / (2.0 * variance_m2);
 }
 
 namespace {
 
-// Of model before the measured surface, where nothing is segmented.
-double cost_in_front(double depth_m, const PixelCostOptions& options) {
+// The cost of model before the measured surface by `depth_m`, where nothing is segmented.
+double free_space_cost(double depth_m, const PixelCostOptions& options) {
     if (!(options.free_space_depth_m > 0.0)) return 1.0;
     return 1.0 + (options.free_space_cost - 1.0) * std::clamp(depth_m / options.free_space_depth_m - 1.0, 0.0, 1.0);
 }
 
-// The cost of one ray that meets the model, and its count.
-double cost_of_hit(double in_front_m, double residual_m, double sigma_m, PixelState state, bool segmented,
-                   double weight, const PixelCostOptions& options, PixelCost& counts) {
-    const double r = residual_m / (options.truncation_sigmas * sigma_m);  // positive: the model is in front
-    if (r > 1.0) {
-        ++counts.free_space_violations;
-        ++counts.contradicted;
-        return segmented ? 1.0 : cost_in_front(in_front_m, options);
-    }
-    if (r < -1.0) {
-        ++counts.occluded;
-        if (segmented && state == PixelState::kCandidate) {
-            ++counts.contradicted;
-            return 1.0;
-        }
-        return segmented ? options.occluded_cost : weight * options.unexplained_cost;
-    }
-    if (state == PixelState::kBackground) {
-        ++counts.off_mask;
-        return options.occluded_cost;
-    }
-    ++counts.agreeing;
-    return weight * r * r;
-}
-
-// One hit in camera coordinates.
+// A sample of the view in camera coordinates [m].
 struct Hit {
     Eigen::Vector3f point;
     Eigen::Vector3f normal;
     int index = 0;  // of the grid
 };
 
-enum class Outline { kInside, kEnds, kGoesOn };
+// What the model's end looks like at a ray.
+enum class Edge {
+    kInterior,    // the model goes on in all directions that are measured
+    kSilhouette,  // the model ends, and so does the measured surface
+    kCoplanar,    // the model ends, but the measured surface goes on in its tangent plane
+};
 
-// Whether the model ends at this ray, and if so, whether the measured surface goes on in the model's tangent plane.
-Outline outline_at(const Hit& hit, const ObservedGrid& observed, const std::vector<char>& covered, double sigma_m) {
-    constexpr int kBeyond = 2;  // grid steps: the one beside the outline may be a mixed pixel
+Edge edge_at(const Hit& hit, const ObservedGrid& observed, const std::vector<char>& covered,
+             const PixelCostOptions& options) {
     const int width = observed.grid.width, height = observed.grid.height;
     const int u = hit.index % width, v = hit.index / width;
     const float distance_m = hit.normal.dot(hit.point);
-    Outline outline = Outline::kInside;
+    Edge edge = Edge::kInterior;
     for (const auto& [du, dv] : {std::pair{1, 0}, std::pair{-1, 0}, std::pair{0, 1}, std::pair{0, -1}}) {
-        const int far_u = u + kBeyond * du, far_v = v + kBeyond * dv;
+        const int far_u = u + options.outline_steps * du, far_v = v + options.outline_steps * dv;
         if (far_u < 0 || far_v < 0 || far_u >= width || far_v >= height) continue;
         const int beside = (v + dv) * width + u + du, beyond = far_v * width + far_u;
         if (covered[beside] || covered[beyond] || observed.states[beyond] == PixelState::kNoDepth) continue;
         const Eigen::Vector3f ray = observed.camera.ray(far_u, far_v).cast<float>();
         const float off_m = hit.normal.dot(ray) * observed.depth_m[beyond] - distance_m;  // along the normal
-        if (std::abs(off_m) < 3.0 * std::hypot(sigma_m, observed.sigma_m[beyond])) return Outline::kGoesOn;
-        outline = Outline::kEnds;
+        const double sigma_m = std::hypot(options.outline_sigma_m, observed.sigma_m[beyond]);
+        if (std::abs(off_m) < options.outline_gate_sigmas * sigma_m) return Edge::kCoplanar;
+        edge = Edge::kSilhouette;
     }
-    return outline;
+    return edge;
 }
 
 double total_weight(const ObservedGrid& observed) {
@@ -113,7 +94,8 @@ std::vector<char> covered_by(const View& view, const PixelGrid& grid) {
     return filled;
 }
 
-// Where the pixel's ray meets the tangent plane of a sample within the pixel; the sample where they hardly meet.
+// Where the pixel's ray meets the tangent plane of a sample. Where ray and plane are nearly parallel, the sample
+// itself.
 Eigen::Vector3f on_ray(const Hit& sample, const ObservedGrid& observed) {
     constexpr float kLeastCosine = 0.1F;
     const int width = observed.grid.width;
@@ -123,58 +105,121 @@ Eigen::Vector3f on_ray(const Hit& sample, const ObservedGrid& observed) {
                                                        : Eigen::Vector3f(sample.normal.dot(sample.point) / slope * ray);
 }
 
+// Sums the costs of one view's rays, in their order.
+class PixelCostSum {
+  public:
+    PixelCostSum(const ObservedGrid& observed, const PixelCostOptions& options, std::vector<char> covered)
+        : observed_(observed),
+          options_(options),
+          covered_(std::move(covered)),
+          extra_variance_m2_(options.extra_sigma_m * options.extra_sigma_m) {
+        counts_.segmented = observed.segmented;
+    }
+
+    void add(const Hit& hit);
+    // With the candidate pixels that no ray covers.
+    PixelCost total() const;
+
+  private:
+    double cost_of(double in_front_m, double residual_m, double sigma_m, PixelState state, double weight);
+    void judge_edge(const Hit& hit, double weight, double cost);
+
+    const ObservedGrid& observed_;
+    const PixelCostOptions& options_;
+    const std::vector<char> covered_;
+    const double extra_variance_m2_;
+    PixelCost counts_;
+    double sum_ = 0.0;
+    double covered_weight_ = 0.0;
+    double explained_ = 0.0;  // by agreeing rays that are not coplanar with their surroundings
+    int candidates_covered_ = 0;
+};
+
+void PixelCostSum::add(const Hit& hit) {
+    const PixelState state = observed_.states[hit.index];
+    const double cosine = std::abs(hit.normal.dot(hit.point)) / hit.point.norm();
+    const double sensor_m = observed_.sigma_m[hit.index];
+    const double sigma_m = std::sqrt(sensor_m * sensor_m + extra_variance_m2_);
+    const double in_front_m = observed_.depth_m[hit.index] - hit.point.z();
+    candidates_covered_ += state == PixelState::kCandidate;
+    ++counts_.model_rays;
+    const int agreeing_before = counts_.agreeing;
+    const double weight = observed_.weight(hit.index);
+    covered_weight_ += weight;
+    const double cost = cost_of(in_front_m, in_front_m * cosine, sigma_m, state, weight);
+    sum_ += cost;
+    if (options_.with_outline && counts_.agreeing != agreeing_before) judge_edge(hit, weight, cost);
+}
+
+// The cost of one ray that meets the model, and its count.
+double PixelCostSum::cost_of(double in_front_m, double residual_m, double sigma_m, PixelState state, double weight) {
+    const bool segmented = observed_.segmented;
+    const double r = residual_m / (options_.truncation_sigmas * sigma_m);  // positive: the model is in front
+    if (r > 1.0) {
+        ++counts_.free_space_violations;
+        ++counts_.contradicted;
+        return segmented ? 1.0 : free_space_cost(in_front_m, options_);
+    }
+    if (r < -1.0) {
+        ++counts_.occluded;
+        if (segmented && state == PixelState::kCandidate) {
+            ++counts_.contradicted;
+            return 1.0;
+        }
+        return segmented ? options_.occluded_cost : weight * options_.unexplained_cost;
+    }
+    if (state == PixelState::kBackground) {
+        ++counts_.off_mask;
+        return options_.occluded_cost;
+    }
+    ++counts_.agreeing;
+    return weight * r * r;
+}
+
+// An agreeing ray beyond which the surface goes on is no evidence of the object.
+void PixelCostSum::judge_edge(const Hit& hit, double weight, double cost) {
+    const Edge edge = edge_at(hit, observed_, covered_, options_);
+    counts_.outline += edge != Edge::kInterior;
+    if (edge != Edge::kCoplanar) {
+        explained_ += weight * options_.unexplained_cost - cost;
+        return;
+    }
+    ++counts_.coplanar;
+    if (observed_.segmented) return;
+    --counts_.agreeing;
+    sum_ += options_.outline_cost - cost;
+}
+
+PixelCost PixelCostSum::total() const {
+    PixelCost result = counts_;
+    double sum = sum_;
+    // The larger the coplanar share of the outline, the less the rays within are evidence of the object.
+    if (!observed_.segmented) sum += result.coplanar_share() * result.coplanar_share() * std::max(0.0, explained_);
+    result.missing_model = observed_.num_candidates - candidates_covered_;
+    result.gain = options_.unexplained_cost * covered_weight_ - sum;
+    double missing = result.missing_model;
+    if (!observed_.weights.empty()) missing = total_weight(observed_) - covered_weight_;
+    sum += missing * (observed_.segmented ? 1.0 : options_.unexplained_cost);
+    result.judged = result.model_rays + result.missing_model;
+    result.cost = result.judged > 0 ? sum / result.judged : 1.0;
+    return result;
+}
+
 }  // namespace
 
 PixelCost pixel_cost(const View& view, const Pose& camera_from_object, const ObservedGrid& observed,
                      const PixelCostOptions& options) {
     const Eigen::Matrix3f rotation = camera_from_object.rotation_matrix().cast<float>();
     const Eigen::Vector3f translation = camera_from_object.translation.cast<float>();
-    const double extra_variance_m2 = options.extra_sigma_m * options.extra_sigma_m;
-    const std::vector<char> covered = options.with_outline ? covered_by(view, observed.grid) : std::vector<char>{};
-    PixelCost result;
-    result.segmented = observed.segmented;
-    double sum = 0.0, covered_weight = 0.0, explained = 0.0;
-    int candidates_covered = 0;
+    PixelCostSum sum(observed, options, options.with_outline ? covered_by(view, observed.grid) : std::vector<char>{});
     for (std::size_t k = 0; k < view.size(); ++k) {
         const int index = view.pixels[k];
-        const PixelState state = observed.states[index];
-        if (state == PixelState::kNoDepth) continue;
+        if (observed.states[index] == PixelState::kNoDepth) continue;
         Hit hit{rotation * view.points_in_object[k] + translation, rotation * view.normals_in_object[k], index};
         if (view.of_samples) hit.point = on_ray(hit, observed);
-        const double cosine = std::abs(hit.normal.dot(hit.point)) / hit.point.norm();
-        const double sensor_m = observed.sigma_m[index];
-        const double sigma_m = std::sqrt(sensor_m * sensor_m + extra_variance_m2);
-        const double in_front_m = observed.depth_m[index] - hit.point.z();
-        candidates_covered += state == PixelState::kCandidate;
-        ++result.model_rays;
-        const int agreeing_before = result.agreeing;
-        const double weight = observed.weight(index);
-        covered_weight += weight;
-        const double cost =
-            cost_of_hit(in_front_m, in_front_m * cosine, sigma_m, state, observed.segmented, weight, options, result);
-        sum += cost;
-        if (!options.with_outline || result.agreeing == agreeing_before) continue;
-        const Outline outline = outline_at(hit, observed, covered, options.outline_sigma_m);
-        result.outline += outline != Outline::kInside;
-        if (outline != Outline::kGoesOn) {
-            explained += weight * options.unexplained_cost - cost;
-            continue;
-        }
-        ++result.coplanar;
-        if (observed.segmented) continue;
-        --result.agreeing;
-        sum += options.outline_cost - cost;
+        sum.add(hit);
     }
-    // The more of its outline the surface goes on beyond, the less what lies within is the object.
-    if (!observed.segmented) sum += result.coplanar_share() * result.coplanar_share() * std::max(0.0, explained);
-    result.missing_model = observed.num_candidates - candidates_covered;
-    result.gain = options.unexplained_cost * covered_weight - sum;
-    double missing = result.missing_model;
-    if (!observed.weights.empty()) missing = total_weight(observed) - covered_weight;
-    sum += missing * (observed.segmented ? 1.0 : options.unexplained_cost);
-    result.judged = result.model_rays + result.missing_model;
-    result.cost = result.judged > 0 ? sum / result.judged : 1.0;
-    return result;
+    return sum.total();
 }
 
 double log_evidence(const PixelCost& cost, const PixelCostOptions& options, double rays_per_evidence) {

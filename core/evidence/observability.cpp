@@ -10,9 +10,9 @@
 namespace nearpose {
 namespace {
 
-// "x" where an axis of the object is within 15 degrees, else the direction's numbers.
+// "x" where that axis of the object is within 15 degrees of the direction; otherwise the direction's components.
 std::string axis_name(Eigen::Vector3d direction) {
-    constexpr double kCosine = 0.966;
+    constexpr double kCosine = 0.966;  // of 15 degrees
     direction.normalize();
     Eigen::Index largest = 0;
     direction.cwiseAbs().maxCoeff(&largest);
@@ -29,7 +29,8 @@ std::string axis_name(Eigen::Vector3d direction) {
     return text;
 }
 
-// What part of the motion is a turn decides its name; where both are large it is a turn about an axis far away.
+// A motion is named by its larger part. Where neither is twice the other, it is a rotation about an axis outside the
+// centre, and both are named.
 std::string name_of(const Twist& direction) {
     const double turn = direction.head<3>().norm(), slide = direction.tail<3>().norm();
     if (slide > 2.0 * turn) return "slides along " + axis_name(direction.tail<3>());

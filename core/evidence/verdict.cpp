@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/check.hpp"
+#include "core/base/statistics.hpp"
 
 namespace nearpose {
 
@@ -25,16 +26,17 @@ double largest_sigma(const Eigen::Matrix3d& covariance) {
     return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues().maxCoeff());
 }
 
+// Whether the 90 % regions of rotation and translation lie within the tolerance, without turns about axes of
+// revolution.
 bool within_tolerance(const Matrix6d& covariance, const Tolerance& tolerance, const Symmetries& symmetries) {
-    constexpr double kRadiusOf90Percent = 2.5003;  // of a three-dimensional normal distribution, in sigmas
     Eigen::Matrix3d rotation = covariance.topLeftCorner<3, 3>();
     for (const AxisOfRevolution& axis : symmetries.continuous) {
         const Eigen::Matrix3d across =
             Eigen::Matrix3d::Identity() - axis.axis_in_object * axis.axis_in_object.transpose();
         rotation = across * rotation * across.transpose();
     }
-    return kRadiusOf90Percent * largest_sigma(rotation) <= tolerance.rotation_rad &&
-           kRadiusOf90Percent * largest_sigma(covariance.bottomRightCorner<3, 3>()) <= tolerance.translation_m;
+    return kNormalRadius3_90 * largest_sigma(rotation) <= tolerance.rotation_rad &&
+           kNormalRadius3_90 * largest_sigma(covariance.bottomRightCorner<3, 3>()) <= tolerance.translation_m;
 }
 
 }  // namespace

@@ -7,13 +7,10 @@
 namespace nearpose {
 namespace {
 
-constexpr double kGateSigmas = 5.0;   // a pair farther off than that is not the same surface
-constexpr double kHuberSigmas = 2.0;  // beyond it a residual pulls with constant force
-
-// Neighbouring rays share the field's nodes: their rows are summed up as small matrices first.
+// Neighbouring rays share the field's nodes, so their rows are first summed in a small matrix.
 class CellSum {
   public:
-    // The pose, the nodes around and the depth's scale, the part's scale, the residual.
+    // The pose, the four nodes around and the depth's scale, the part's scale, the residual.
     static constexpr int kUsed = 6 + 5 + 1 + 1;
     static constexpr int kSize = 14;  // even, so that the compiler takes two numbers at a time
     using Row = Eigen::Matrix<double, kSize, 1>;
@@ -36,7 +33,7 @@ class CellSum {
     template <int kColumn = 0>
     void add_lower_half(const Row& row, const Row& weighted) {
         if constexpr (kColumn < kUsed) {
-            constexpr int kLength = kSize - (kColumn - kColumn % 2);  // two numbers at a time
+            constexpr int kLength = kSize - (kColumn - kColumn % 2);  // even as well
             sum_.col(kColumn).template tail<kLength>() += weighted[kColumn] * row.template tail<kLength>();
             add_lower_half<kColumn + 1>(row, weighted);
         }
@@ -46,52 +43,59 @@ class CellSum {
     decltype(SensorField::Row::unknowns) unknowns_{};
 };
 
-// So many rays share one of the errors that are finer than the field's nodes: each counts with that error, not with its
-// mean.
+// How many rays share one of the errors that are finer than the field's nodes. Their mean does not average that error
+// out, so each ray's variance is made larger by this factor.
 double rays_per_fine_error(const SensorModel& sensor, int stride) {
-    const double side = std::max(1.0, 0.25 * sensor.systematic_length_pixels / stride);
+    const double side = std::max(1.0, sensor.fine_length_pixels() / stride);
     return side * side;
 }
 
-// The surface measured around a ray: the mean over pixels of its part of the grid that lie on the ray's face.
+// The mean residual over the pixels around a ray that lie on the ray's face.
 struct MeasuredAround {
     double residual_m = 0.0;  // along the normal
-    int count = 0;
+    int count = 0;            // of those pixels
 };
 
-// Whether the rays beside one meet the same face.
-struct FaceGoesOn {
+// Whether the neighbouring rays meet the same face.
+struct SameFace {
     bool left = false, right = false, up = false, down = false;
 };
 
-FaceGoesOn face_goes_on(const View& view, const std::vector<int>& hit_at, std::size_t k, const PixelGrid& grid) {
-    const int index = view.pixels[k], u = index % grid.width, v = index / grid.width;
-    const auto same = [&](int other) {
-        const int hit = hit_at[other];
-        if (hit < 0) return false;
-        const Eigen::Vector3f between = view.points_in_object[hit] - view.points_in_object[k];
-        constexpr float kSine = 0.05F;
-        return std::abs(view.normals_in_object[k].dot(between)) < kSine * between.norm() &&
-               std::abs(view.normals_in_object[hit].dot(between)) < kSine * between.norm();
-    };
-    return {u > 0 && same(index - 1), u + 1 < grid.width && same(index + 1), v > 0 && same(index - grid.width),
-            v + 1 < grid.height && same(index + grid.width)};
-}
+// The plane of the face that a ray meets, at the pose of the linearisation.
+struct RayFace {
+    int u, v;                          // the ray's pixel in the image
+    Eigen::Vector3d normal;            // in object axes
+    Eigen::Vector3d normal_in_camera;  // the same in camera axes
+    double slope;                      // metres along the normal per metre of depth
+    double offset_m;                   // normal . (point on the face - camera)
+    double model_m;                    // depth of the plane along the ray
 
-// A plane's inverse depth is affine over the image, so that one cast ray speaks for the pixels around: the noise of
-// many is averaged for the price of one. Where the face ends or bends the gate leaves pixels out.
-struct FaceInImage {
+    // Whether the camera still looks at the face's front.
+    bool visible() const { return model_m > 0.0 && slope < 0.0; }
+};
+
+// The inverse depth of a plane is affine over the image. One cast ray can therefore be compared with all pixels around
+// it, which averages the noise of many pixels for the price of one ray.
+struct PlaneInImage {
     double inverse_depth, along_u, along_v;  // [1/m], and per pixel
     double slope_by_inverse;                 // normal . (point - camera): the slope of a ray is this times 1 / depth
 
-    MeasuredAround compare(const Observation& observation, int u, int v, int reach, const FaceGoesOn& goes_on,
+    PlaneInImage(const RayFace& face, const PinholeCamera& camera)
+        : inverse_depth(1.0 / face.model_m),
+          along_u(face.normal_in_camera.x() / (camera.fx * face.offset_m)),
+          along_v(face.normal_in_camera.y() / (camera.fy * face.offset_m)),
+          slope_by_inverse(face.offset_m) {}
+
+    // Pixels up to `reach` away on those sides where the face goes on. Where it ends or bends between rays, the gate
+    // leaves pixels out.
+    MeasuredAround compare(const Observation& observation, const RayFace& face, int reach, const SameFace& same,
                            double expected_m, double gate_m) const {
         const PinholeCamera& camera = observation.camera();
         MeasuredAround sum;
         const int step = std::max(1, reach);
-        for (int dv = goes_on.up ? -reach : 0; dv <= (goes_on.down ? reach : 0); dv += step) {
-            for (int du = goes_on.left ? -reach : 0; du <= (goes_on.right ? reach : 0); du += step) {
-                const int other_u = u + du, other_v = v + dv;
+        for (int dv = same.up ? -reach : 0; dv <= (same.down ? reach : 0); dv += step) {
+            for (int du = same.left ? -reach : 0; du <= (same.right ? reach : 0); du += step) {
+                const int other_u = face.u + du, other_v = face.v + dv;
                 if (other_u < 0 || other_v < 0 || other_u >= camera.width || other_v >= camera.height) continue;
                 const int pixel = other_v * camera.width + other_u;
                 if (observation.states()[pixel] != PixelState::kCandidate) continue;
@@ -108,62 +112,126 @@ struct FaceInImage {
     }
 };
 
+// Of each ray of the grid, its index in the view; -1 where it meets nothing.
+std::vector<int> hits_on(const PixelGrid& grid, const View& view) {
+    std::vector<int> hit_at(static_cast<std::size_t>(grid.size()), -1);
+    for (std::size_t k = 0; k < view.size(); ++k) hit_at[view.pixels[k]] = static_cast<int>(k);
+    return hit_at;
+}
+
+// All that the rays of one linearisation share.
+class RayLineariser {
+  public:
+    RayLineariser(const Linearisation& at, const View& view, const SensorField& field, const StepContext& context,
+                  const FitRayOptions& options)
+        : at_(at),
+          view_(view),
+          field_(field),
+          observation_(context.observation),
+          observed_(context.observed),
+          options_(options),
+          centre_in_object_(context.views.extent().centre_in_object()),
+          rotation_(at.camera_from_object.rotation_matrix()),
+          object_from_camera_(rotation_.transpose()),
+          camera_in_object_(-(object_from_camera_ * at.camera_from_object.translation)),
+          hit_at_(hits_on(observed_.grid, view)),
+          fine_m2_(sensor().systematic_fine_sigma_m * sensor().systematic_fine_sigma_m),
+          field_m2_(sensor().systematic_sigma_m * sensor().systematic_sigma_m),
+          extra_m2_(at.extra_sigma_m * at.extra_sigma_m),
+          rays_per_fine_error_(rays_per_fine_error(sensor(), observed_.grid.stride)),
+          reach_pixels_(static_cast<int>(observed_.grid.stride * options.reach_spacings)) {}
+
+    RayFace face_of(std::size_t k) const;
+    // Adds the k-th ray's row; nothing where no pixel around it lies on its face.
+    void add(std::size_t k, const RayFace& face, CellSum& cell, FitEquations& equations) const;
+
+  private:
+    const SensorModel& sensor() const { return observation_.sensor(); }
+    SameFace same_face(std::size_t k) const;
+
+    const Linearisation& at_;
+    const View& view_;
+    const SensorField& field_;
+    const Observation& observation_;
+    const ObservedGrid& observed_;
+    const FitRayOptions& options_;
+    const Eigen::Vector3d centre_in_object_;
+    const Eigen::Matrix3d rotation_, object_from_camera_;  // of camera from object, and its inverse
+    const Eigen::Vector3d camera_in_object_;
+    const std::vector<int> hit_at_;
+    const double fine_m2_, field_m2_, extra_m2_;  // variances: the first two in depth, the last along the normal
+    const double rays_per_fine_error_;
+    const int reach_pixels_;
+};
+
+RayFace RayLineariser::face_of(std::size_t k) const {
+    RayFace face;
+    face.u = observed_.grid.image_u(view_.pixels[k]);
+    face.v = observed_.grid.image_v(view_.pixels[k]);
+    face.normal = view_.normals_in_object[k].cast<double>();
+    face.normal_in_camera = rotation_ * face.normal;
+    face.slope = face.normal_in_camera.dot(observation_.camera().ray(face.u, face.v));
+    face.offset_m = face.normal.dot(view_.points_in_object[k].cast<double>() - camera_in_object_);
+    face.model_m = face.offset_m / face.slope;
+    return face;
+}
+
+SameFace RayLineariser::same_face(std::size_t k) const {
+    const PixelGrid& grid = observed_.grid;
+    const int index = view_.pixels[k], u = index % grid.width, v = index / grid.width;
+    const auto same = [&](int other) {
+        const int hit = hit_at_[other];
+        if (hit < 0) return false;
+        const Eigen::Vector3f between = view_.points_in_object[hit] - view_.points_in_object[k];
+        return std::abs(view_.normals_in_object[k].dot(between)) < options_.coplanar_sine * between.norm() &&
+               std::abs(view_.normals_in_object[hit].dot(between)) < options_.coplanar_sine * between.norm();
+    };
+    return {u > 0 && same(index - 1), u + 1 < grid.width && same(index + 1), v > 0 && same(index - grid.width),
+            v + 1 < grid.height && same(index + grid.width)};
+}
+
+void RayLineariser::add(std::size_t k, const RayFace& face, CellSum& cell, FitEquations& equations) const {
+    const PinholeCamera& camera = observation_.camera();
+    const int index = view_.pixels[k];
+    const double slope = face.slope, measured_m = observed_.depth_m[index];
+    const SensorField::Row place = field_.row_at(face.u, face.v, measured_m);
+    double known_m = 0.0;  // the sensor's error here, as far as it is known
+    for (int i = 0; i < 5; ++i) known_m += place.factors[i] * at_.errors[place.unknowns[i]];
+    const double squared_slope = slope * slope;
+    const double noise_m2 =
+        sensor().variance_along_normal_m2(observed_.sigma_m[index], measured_m, face.normal_in_camera.z(), camera.fx);
+    const double fine_along_normal_m2 = fine_m2_ * squared_slope;
+    const double gate_m =
+        options_.gate_sigmas * std::sqrt(noise_m2 + fine_along_normal_m2 + field_m2_ * squared_slope + extra_m2_);
+    const MeasuredAround measured =
+        PlaneInImage(face, camera).compare(observation_, face, reach_pixels_, same_face(k), slope * known_m, gate_m);
+    if (measured.count == 0) return;
+    const double sigma_m2 = noise_m2 / measured.count + fine_along_normal_m2;
+    const double off_m = std::abs(measured.residual_m - slope * known_m);
+    const double robust =
+        std::min(1.0, options_.huber_sigmas * std::sqrt(sigma_m2 + extra_m2_) / std::max(off_m, 1e-12));
+    CellSum::Row row;
+    row << (camera_in_object_ + face.model_m * (object_from_camera_ * camera.ray(face.u, face.v)) - centre_in_object_)
+               .cross(face.normal),
+        face.normal, slope * Eigen::Map<const Eigen::Matrix<double, 5, 1>>(place.factors.data()),
+        face.normal.dot(view_.points_in_object[k].cast<double>() - centre_in_object_), measured.residual_m, 0.0;
+    const double variance_m2 = sigma_m2 + (rays_per_fine_error_ - 1.0) * fine_along_normal_m2;
+    cell.add(place, row, robust / variance_m2, equations);
+    equations.scaled_residuals.push_back(off_m / std::sqrt(sigma_m2));
+}
+
 }  // namespace
 
-FitEquations linearise(const Linearisation& at, const View& view, const SensorField& field,
-                       const StepContext& context) {
-    const ObservedGrid& observed = context.observed;
-    const SensorModel& sensor = context.observation.sensor();
-    const Eigen::Vector3d centre = context.views.extent().centre_in_object();
-    const Eigen::Matrix3d rotation = at.camera_from_object.rotation_matrix();
-    const Eigen::Matrix3d object_from_camera = rotation.transpose();
-    const Eigen::Vector3d camera_in_object = -(object_from_camera * at.camera_from_object.translation);
-    const double fine_m2 = sensor.systematic_fine_sigma_m * sensor.systematic_fine_sigma_m;
-    const double shared = rays_per_fine_error(sensor, observed.grid.stride);
-    const double field_m2 = sensor.systematic_sigma_m * sensor.systematic_sigma_m;
-    const double extra_m2 = at.extra_sigma_m * at.extra_sigma_m;
+FitEquations linearise(const Linearisation& at, const View& view, const SensorField& field, const StepContext& context,
+                       const FitRayOptions& options) {
+    const RayLineariser rays(at, view, field, context, options);
     FitEquations equations(field.num_unknowns() + 1);
     equations.scaled_residuals.reserve(view.size());
     CellSum cell;
-    const PinholeCamera& camera = context.observation.camera();
-    const int reach = observed.grid.stride * 2 / 5;
-    std::vector<int> hit_at(static_cast<std::size_t>(observed.grid.size()), -1);
-    for (std::size_t k = 0; k < view.size(); ++k) hit_at[view.pixels[k]] = static_cast<int>(k);
     for (std::size_t k = 0; k < view.size(); ++k) {
-        const int index = view.pixels[k];
-        if (observed.states[index] != PixelState::kCandidate) continue;
-        const Eigen::Vector3d normal = view.normals_in_object[k].cast<double>();
-        const Eigen::Vector3d normal_in_camera = rotation * normal;
-        const int u = observed.grid.image_u(index), v = observed.grid.image_v(index);
-        const double slope = normal_in_camera.dot(camera.ray(u, v));  // metres along the normal per metre of depth
-        const double offset_m = normal.dot(view.points_in_object[k].cast<double>() - camera_in_object);
-        const double model_m = offset_m / slope;
-        if (!(model_m > 0.0 && slope < 0.0)) continue;  // the face is seen from behind by now, or on edge
-        const double measured_m = observed.depth_m[index];
-        const SensorField::Row place = field.row_at(u, v, measured_m);
-        double known_m = 0.0;
-        for (int i = 0; i < 5; ++i) known_m += place.factors[i] * at.errors[place.unknowns[i]];
-        const double squared_slope = slope * slope;
-        const double noise_m2 =
-            sensor.variance_along_normal_m2(observed.sigma_m[index], measured_m, normal_in_camera.z(), camera.fx);
-        const double fine_along_normal_m2 = fine_m2 * squared_slope;
-        const double gate_m =
-            kGateSigmas * std::sqrt(noise_m2 + fine_along_normal_m2 + field_m2 * squared_slope + extra_m2);
-        const FaceInImage face{1.0 / model_m, normal_in_camera.x() / (camera.fx * offset_m),
-                               normal_in_camera.y() / (camera.fy * offset_m), offset_m};
-        const MeasuredAround measured = face.compare(
-            context.observation, u, v, reach, face_goes_on(view, hit_at, k, observed.grid), slope * known_m, gate_m);
-        if (measured.count == 0) continue;
-        const double sigma_m2 = noise_m2 / measured.count + fine_along_normal_m2;
-        const double off_m = std::abs(measured.residual_m - slope * known_m);
-        const double robust = std::min(1.0, kHuberSigmas * std::sqrt(sigma_m2 + extra_m2) / std::max(off_m, 1e-12));
-        CellSum::Row row;
-        row << (camera_in_object + model_m * (object_from_camera * camera.ray(u, v)) - centre).cross(normal), normal,
-            slope * Eigen::Map<const Eigen::Matrix<double, 5, 1>>(place.factors.data()),
-            normal.dot(view.points_in_object[k].cast<double>() - centre), measured.residual_m, 0.0;
-        const double variance_m2 = sigma_m2 + (shared - 1.0) * fine_along_normal_m2;
-        cell.add(place, row, robust / variance_m2, equations);
-        equations.scaled_residuals.push_back(off_m / std::sqrt(sigma_m2));
+        if (context.observed.states[view.pixels[k]] != PixelState::kCandidate) continue;
+        const RayFace face = rays.face_of(k);
+        if (face.visible()) rays.add(k, face, cell, equations);
     }
     cell.flush(equations);
     return equations;

@@ -1,4 +1,4 @@
-// The fine fit's rays: what each measures of the pose and of the shared errors, summed up as normal equations.
+// The rays of the joint fit: what each measures of the pose and of the sensor's errors, summed as normal equations.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,15 +9,26 @@
 
 namespace nearpose {
 
+struct FitRayOptions {
+    double gate_sigmas = 5.0;   // a measurement farther from the face belongs to another surface
+    double huber_sigmas = 2.0;  // a larger residual pulls with constant force (Huber 1964)
+    // A ray is compared with pixels up to this distance on either side, in spacings of the rays. At 0.4 the pixels of
+    // neighbouring rays do not overlap.
+    double reach_spacings = 0.4;
+    // Two rays meet the same face where the line between their points is tilted out of both tangent planes by less:
+    // the sine of that angle.
+    float coplanar_sine = 0.05F;
+};
+
 // Where the rays' residuals are linearised.
 struct Linearisation {
     Pose camera_from_object;
-    Eigen::VectorXd errors;  // of the sensor, as far as is known: for weights and gate
-    double extra_sigma_m;    // how far off the pose may still be: for the gate and what counts as an outlier
+    Eigen::VectorXd errors;  // of the sensor, as far as they are known; used for weights and gate alone
+    double extra_sigma_m;    // how far off the pose may still be; widens the gate and the bound of an outlier
 };
 
-// Over (twist about the model's centre, the field's unknowns, the part's scale about its centre against its CAD), at
-// the pose and at zero errors.
+// Normal equations at the pose and at zero errors. The unknowns are the twist about the model's centre, the field's
+// unknowns, and the part's scale about its centre against its CAD.
 struct FitEquations {
     explicit FitEquations(Eigen::Index unknowns_beside_pose)
         : sums(Eigen::MatrixXd::Zero(6 + unknowns_beside_pose + 1, 6 + unknowns_beside_pose + 1)),
@@ -25,10 +36,12 @@ struct FitEquations {
 
     Eigen::MatrixXd sums;  // of weight * row * row^T, row = (derivatives, residual)
     Eigen::Index unknowns;
-    std::vector<double> scaled_residuals;  // |residual| / sigma of each ray, the known errors taken off
+    std::vector<double> scaled_residuals;  // |residual| / sigma of each ray, after the known errors
 };
 
-// The rays keep the faces that they met in `view`, which was cast at a pose near by.
-FitEquations linearise(const Linearisation& at, const View& view, const SensorField& field, const StepContext& context);
+// Each ray keeps the face that it met in `view`, which was cast at a pose near by: only the face's plane moves with the
+// pose.
+FitEquations linearise(const Linearisation& at, const View& view, const SensorField& field, const StepContext& context,
+                       const FitRayOptions& options = {});
 
 }  // namespace nearpose

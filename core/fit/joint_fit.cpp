@@ -5,73 +5,59 @@
 #include <cmath>
 #include <limits>
 
-#include "core/fit/fit_rays.hpp"
-#include "core/fit/sensor_field.hpp"
-#include "core/fit/variance_components.hpp"
+#include "core/base/check.hpp"
 
 namespace nearpose {
 namespace {
-
-constexpr int kMaxRounds = 4;
-constexpr double kPartScaleSigma = 0.001;  // a part is so much larger or smaller than its CAD, of itself
 
 View cast(const Pose& camera_from_object, const StepContext& context) {
     return context.views.generate(camera_from_object, context.observed.camera);
 }
 
-// How far the rays' residuals are beyond their sigmas. Beyond 1 it is not the sensor: CAD, edges and dirt add to it.
-struct Misfit {
-    double unit_sigma = 0.0;
+// The variance of unit weight (Foerstner and Wrobel 2016): how much larger the squared residuals are than their
+// variances. Beyond 1 the cause is not the sensor: CAD, edges and dirt add to it.
+class UnitWeight {
+  public:
+    UnitWeight() = default;  // before anything was fitted: 1
+    UnitWeight(double unit_sigma, const FitOptions& options)
+        : variance_(std::max(1.0, unit_sigma * unit_sigma)),
+          noise_variance_(
+              std::max(1.0, unit_sigma * unit_sigma / (options.usual_unit_sigma * options.usual_unit_sigma))) {}
 
-    double unit_variance() const { return std::max(1.0, unit_sigma * unit_sigma); }
-    // The sensor's model is on the wide side: where it holds, residuals come out at about kUsual, and a noise of more
-    // than that is more than the model's.
-    double noise_variance() const {
-        constexpr double kUsual = 0.7;
-        return std::max(1.0, unit_sigma * unit_sigma / (kUsual * kUsual));
-    }
+    double variance() const { return variance_; }              // for the fit's weights
+    double noise_variance() const { return noise_variance_; }  // for the covariance
+
+  private:
+    double variance_ = 1.0, noise_variance_ = 1.0;
 };
 
-// What is solved: the pose and those of the unknowns that some ray met; of the others nothing is learned.
+// What is solved: the pose and those unknowns that some ray measures.
 struct Problem {
-    std::vector<Eigen::Index> active;  // of the pose and the unknowns
-    Eigen::Index active_nodes = 0;     // of the field, after the pose
+    std::vector<Eigen::Index> active;  // indices among the pose (the first six) and the unknowns
+    Eigen::Index active_nodes = 0;     // of the field; they follow the pose
     Eigen::MatrixXd information;       // of the rays, over the active ones
     Eigen::VectorXd gradient;
-    Eigen::VectorXd of_part_scale;     // what the gradient is for a part that is larger than its CAD by all of itself
-    Eigen::VectorXd variances;         // of the active unknowns
-    Eigen::VectorXd fitted_variances;  // with which they take part in the fit
+    Eigen::VectorXd part_scale_gradient;  // the gradient of a part that is twice as large as its CAD
+    Eigen::VectorXd variances;            // prior, of the active unknowns
+    Eigen::VectorXd fitted_variances;     // the smaller ones with which they take part in the fit
 };
 
-// Of what is no error of the sensor, its errors explain the less.
-SensorModel fitted_part(const SensorModel& sensor, const Misfit& misfit) {
+// The sensor's errors as the fit may use them. The larger the residuals that are no error of the sensor, the less of
+// them its errors may explain.
+SensorModel fitted_part(const SensorModel& sensor, const UnitWeight& weight) {
     SensorModel fitted = sensor;
-    fitted.systematic_sigma_m *= sensor.systematic_fitted / misfit.unit_variance();
+    fitted.systematic_sigma_m *= sensor.systematic_fitted / weight.variance();
     fitted.depth_scale_sigma *= sensor.scale_fitted;
     return fitted;
 }
 
-Problem problem_of(const FitEquations& equations, const Misfit& misfit, const SensorField& field,
-                   const StepContext& context) {
-    const SensorModel& sensor = context.observation.sensor();
-    Problem problem;
-    const Eigen::Index part_scale = 6 + field.num_unknowns(), residual = part_scale + 1;
-    for (Eigen::Index i = 0; i < part_scale; ++i) {
-        if (i >= 6 && !(equations.sums(i, i) > 0.0)) continue;
-        problem.active.push_back(i);
-        problem.active_nodes += i >= 6 && i < 6 + field.num_nodes();
-    }
-    problem.information = equations.sums(problem.active, problem.active) / misfit.unit_variance();
-    problem.gradient = equations.sums(problem.active, residual) / misfit.unit_variance();
-    problem.of_part_scale = equations.sums(problem.active, part_scale) / misfit.unit_variance();
-    const double diameter_m = context.views.extent().diameter_m();  // a weak prior of the pose
-    problem.information.diagonal().head<3>().array() += 1.0;
-    problem.information.diagonal().segment<3>(3).array() += 1.0 / (diameter_m * diameter_m);
-    // An image that is far noisier than the sensor's model is no better in what its pixels share.
-    constexpr double kUsual = 1.5;  // up to which the model may be off in its noise alone
-    const double worse = std::max(1.0, context.observation.noise_factor() / kUsual);
-    const Eigen::VectorXd all = worse * worse * prior_variances(field, sensor);
-    const Eigen::VectorXd all_fitted = prior_variances(field, fitted_part(sensor, misfit));
+// The prior variances of the active unknowns. An image that is far noisier than the sensor's model is taken to be worse
+// in the errors that its pixels share as well.
+void set_prior(Problem& problem, const UnitWeight& weight, const SensorField& field, const Observation& observation,
+               const FitOptions& options) {
+    const double worse = std::max(1.0, observation.noise_factor() / options.usual_noise_factor);
+    const Eigen::VectorXd all = worse * worse * prior_variances(field, observation.sensor());
+    const Eigen::VectorXd all_fitted = prior_variances(field, fitted_part(observation.sensor(), weight));
     const std::vector<Eigen::Index> beside_pose(problem.active.begin() + 6, problem.active.end());
     problem.variances.resize(static_cast<Eigen::Index>(beside_pose.size()));
     problem.fitted_variances.resize(problem.variances.size());
@@ -79,6 +65,25 @@ Problem problem_of(const FitEquations& equations, const Misfit& misfit, const Se
         problem.variances[i] = all[beside_pose[i] - 6];
         problem.fitted_variances[i] = all_fitted[beside_pose[i] - 6];
     }
+}
+
+Problem problem_of(const FitEquations& equations, const UnitWeight& weight, const SensorField& field,
+                   const StepContext& context, const FitOptions& options) {
+    Problem problem;
+    const Eigen::Index part_scale = 6 + field.num_unknowns(), residual = part_scale + 1;
+    for (Eigen::Index i = 0; i < part_scale; ++i) {
+        if (i >= 6 && !(equations.sums(i, i) > 0.0)) continue;
+        problem.active.push_back(i);
+        problem.active_nodes += i >= 6 && i < 6 + field.num_nodes();
+    }
+    problem.information = equations.sums(problem.active, problem.active) / weight.variance();
+    problem.gradient = equations.sums(problem.active, residual) / weight.variance();
+    problem.part_scale_gradient = equations.sums(problem.active, part_scale) / weight.variance();
+    const double turn_rad = options.prior_rotation_rad;
+    const double shift_m = options.prior_translation_diameters * context.views.extent().diameter_m();
+    problem.information.diagonal().head<3>().array() += 1.0 / (turn_rad * turn_rad);
+    problem.information.diagonal().segment<3>(3).array() += 1.0 / (shift_m * shift_m);
+    set_prior(problem, weight, field, context.observation, options);
     return problem;
 }
 
@@ -88,20 +93,20 @@ Eigen::LLT<Eigen::MatrixXd> factor_of(const Problem& problem) {
     return matrix.llt();
 }
 
-// The sensor's field may be larger than its model says, and the image shows by how much.
-Problem with_larger_field(Problem problem) {
+// The sensor's field may be larger than its model says; the image shows by how much.
+Problem with_larger_field(Problem problem, const GroupVarianceOptions& options) {
     GroupProblem group{problem.information, problem.gradient, Eigen::VectorXd(problem.gradient.size()), 6,
                        problem.active_nodes};
     group.prior_variances << Eigen::VectorXd::Constant(6, std::numeric_limits<double>::infinity()), problem.variances;
-    problem.variances.head(problem.active_nodes) *= std::max(1.0, group_variance_factor(group));
+    problem.variances.head(problem.active_nodes) *= std::max(1.0, group_variance_factor(group, options));
     return problem;
 }
 
-// Of the fit's pose when the sensor's errors have their whole variances, while the fit takes them for smaller: with the
-// fit's matrix M, whose prior of the errors is L, the estimate's error is M^-1 (noise - L errors), hence its covariance
-// M^-1 (J^T W J + L V L) M^-1.
-Matrix6d covariance_of(const Problem& problem, const Misfit& misfit, const Eigen::LLT<Eigen::MatrixXd>& factor) {
-    Eigen::MatrixXd spread = problem.information * (misfit.noise_variance() / misfit.unit_variance());
+// The covariance of the fitted pose. The sensor's errors have their whole variances V, but the fit takes them for
+// smaller. With the fit's matrix M, whose prior of the errors is L, the estimate is off by M^-1 (J^T W noise - L
+// errors) and its covariance is M^-1 (J^T W J + L V L) M^-1.
+Matrix6d covariance_of(const Problem& problem, const UnitWeight& weight, const Eigen::LLT<Eigen::MatrixXd>& factor) {
+    Eigen::MatrixXd spread = problem.information * (weight.noise_variance() / weight.variance());
     spread.diagonal().tail(problem.variances.size()) +=
         problem.fitted_variances.cwiseAbs2().cwiseInverse().cwiseProduct(problem.variances);
     const Eigen::MatrixXd gain = factor.solve(Eigen::MatrixXd::Identity(spread.rows(), 6));
@@ -109,60 +114,81 @@ Matrix6d covariance_of(const Problem& problem, const Misfit& misfit, const Eigen
     return 0.5 * (covariance + covariance.transpose());
 }
 
-// The part's scale can hardly be told from its distance: it is reckoned with, not fitted.
-Matrix6d part_scale_covariance(const Problem& problem, const Eigen::LLT<Eigen::MatrixXd>& factor) {
-    const Twist shift = kPartScaleSigma * factor.solve(problem.of_part_scale).head<6>();
+// The part's scale can hardly be told from its distance, so it is not fitted: its effect on the pose is propagated.
+Matrix6d part_scale_covariance(const Problem& problem, const Eigen::LLT<Eigen::MatrixXd>& factor,
+                               const FitOptions& options) {
+    const Twist shift = options.part_scale_sigma * factor.solve(problem.part_scale_gradient).head<6>();
     return shift * shift.transpose();
 }
 
 }  // namespace
 
-JointFit fit_jointly(const Pose& start, const StepContext& context) {
+void validate(const FitOptions& options) {
+    check_option("fit.max_rounds", options.max_rounds, 1, 100);
+    check_option("fit.first_extra_field_sigmas", options.first_extra_field_sigmas, 0.0, 1e3);
+    check_option("fit.converged_sigmas", options.converged_sigmas, 0.0, 1e3);
+    check_option("fit.same_faces_sigmas", options.same_faces_sigmas, 0.0, 1e3);
+    check_option("fit.prior_rotation_rad", options.prior_rotation_rad, 1e-6, 1e6);
+    check_option("fit.prior_translation_diameters", options.prior_translation_diameters, 1e-6, 1e6);
+    check_option("fit.part_scale_sigma", options.part_scale_sigma, 0.0, 1.0);
+    check_option("fit.usual_unit_sigma", options.usual_unit_sigma, 1e-3, 1e3);
+    check_option("fit.usual_noise_factor", options.usual_noise_factor, 1e-3, 1e3);
+    check_option("fit.rays.gate_sigmas", options.rays.gate_sigmas, 0.1, 1e3);
+    check_option("fit.rays.huber_sigmas", options.rays.huber_sigmas, 0.1, 1e3);
+    check_option("fit.rays.reach_spacings", options.rays.reach_spacings, 0.0, 10.0);
+    check_option("fit.rays.coplanar_sine", options.rays.coplanar_sine, 0.0, 1.0);
+    check_option("fit.field.spacing_lengths", options.field.spacing_lengths, 0.1, 1e3);
+    check_option("fit.field.max_spacings", options.field.max_spacings, 1.0, 1e3);
+    check_option("fit.field_variance.steps", options.field_variance.steps, 0, 1000);
+    check_option("fit.field_variance.min_count", options.field_variance.min_count, 1, 1e6);
+}
+
+JointFit fit_jointly(const Pose& start, const StepContext& context, const FitOptions& options) {
     const SensorModel& sensor = context.observation.sensor();
-    const SensorField field = field_over(context.observation.camera(), sensor);
+    const SensorField field = field_over(context.observation.camera(), sensor, options.field);
     const ModelExtent& extent = context.views.extent();
     const double sigma_m = context.observation.sigma_m(context.observation.mean_distance_m());
-    // Of any of the model's points: less than the first is nothing, less than the second meets the same faces.
-    const double nothing_m = 0.2 * sigma_m, same_faces_m = sigma_m;
     Linearisation at{start, Eigen::VectorXd::Zero(field.num_unknowns()), 0.0};
     JointFit fit;
     View view = cast(start, context);
-    for (int round = 0; round < kMaxRounds; ++round) {
-        // A start that is off by little more than the noise is drawn in from farther at first.
-        at.extra_sigma_m = round == 0 ? 2.0 * sensor.systematic_sigma_m : 0.0;
-        const FitEquations equations = linearise(at, view, field, context);
-        const Misfit misfit{round == 0 ? 0.0 : unit_sigma(equations.scaled_residuals)};  // none before it was fitted
-        const Problem problem = problem_of(equations, misfit, field, context);
+    for (int round = 0; round < options.max_rounds; ++round) {
+        at.extra_sigma_m = round == 0 ? options.first_extra_field_sigmas * sensor.systematic_sigma_m : 0.0;
+        const FitEquations equations = linearise(at, view, field, context, options.rays);
+        const UnitWeight weight =
+            round == 0 ? UnitWeight{} : UnitWeight{unit_sigma(equations.scaled_residuals), options};
+        const Problem problem = problem_of(equations, weight, field, context, options);
         const Eigen::LLT<Eigen::MatrixXd> factor = factor_of(problem);
         const Eigen::VectorXd step = factor.solve(problem.gradient);
         const Pose moved = perturb_about(at.camera_from_object, step.head<6>(), extent.centre_in_object());
+        // An upper bound of how far any point of the model moves.
         const double shift_m = step.segment<3>(3).norm() + 0.5 * extent.diameter_m() * step.head<3>().norm();
         const bool usable = is_valid(moved);
-        const bool last = !usable || round + 1 == kMaxRounds || (round > 0 && shift_m < nothing_m);
+        const bool converged = round > 0 && shift_m < options.converged_sigmas * sigma_m;
+        const bool last = !usable || round + 1 == options.max_rounds || converged;
         if (usable) {
             at.camera_from_object = moved;
             for (std::size_t i = 6; i < problem.active.size(); ++i)
                 at.errors[problem.active[i] - 6] = step[static_cast<Eigen::Index>(i)];
         }
         if (last) {
-            fit.covariance = covariance_of(with_larger_field(problem), misfit, factor);
-            fit.constant_covariance = part_scale_covariance(problem, factor);
+            fit.covariance = covariance_of(with_larger_field(problem, options.field_variance), weight, factor);
+            fit.constant_covariance = part_scale_covariance(problem, factor, options);
         }
         fit.pairs = static_cast<int>(equations.scaled_residuals.size());
         if (last) break;
-        if (shift_m > same_faces_m) view = cast(at.camera_from_object, context);
+        if (shift_m > options.same_faces_sigmas * sigma_m) view = cast(at.camera_from_object, context);
     }
     fit.camera_from_object = at.camera_from_object;
     return fit;
 }
 
-Matrix6d covariance_at(const Pose& camera_from_object, const StepContext& context) {
-    const SensorField field = field_over(context.observation.camera(), context.observation.sensor());
+Matrix6d covariance_at(const Pose& camera_from_object, const StepContext& context, const FitOptions& options) {
+    const SensorField field = field_over(context.observation.camera(), context.observation.sensor(), options.field);
     const Linearisation at{camera_from_object, Eigen::VectorXd::Zero(field.num_unknowns()), 0.0};
-    const Problem problem =
-        problem_of(linearise(at, cast(camera_from_object, context), field, context), {}, field, context);
+    const View view = cast(camera_from_object, context);
+    const Problem problem = problem_of(linearise(at, view, field, context, options.rays), {}, field, context, options);
     const Eigen::LLT<Eigen::MatrixXd> factor = factor_of(problem);
-    return covariance_of(problem, {}, factor) + part_scale_covariance(problem, factor);
+    return covariance_of(problem, {}, factor) + part_scale_covariance(problem, factor, options);
 }
 
 Matrix6d about_origin(const Matrix6d& covariance_about_centre, const Eigen::Vector3d& centre_in_object) {

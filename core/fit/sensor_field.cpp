@@ -16,20 +16,17 @@ SensorField::Row SensorField::row_at(double u, double v, double depth_m) const {
             {left * above / norm, right * above / norm, left * below / norm, right * below / norm, depth_m}};
 }
 
-SensorField field_over(const PinholeCamera& camera, const SensorModel& sensor) {
-    // Errors shared over a length need no finer nodes than this to be told from the pose; finer ones cost time.
-    constexpr double kSpacingLengths = 1.5;
-    // A field finer than that cannot be told from noise, nor be afforded.
-    const double finest = std::max(camera.width, camera.height) / 16.0;
+SensorField field_over(const PinholeCamera& camera, const SensorModel& sensor, const FieldOptions& options) {
+    const double finest = std::max(camera.width, camera.height) / options.max_spacings;
     SensorField field;
-    field.spacing_pixels = std::max(kSpacingLengths * sensor.systematic_length_pixels, finest);
+    field.spacing_pixels = std::max(options.spacing_lengths * sensor.systematic_length_pixels, finest);
     field.nodes_u = static_cast<int>((camera.width - 1) / field.spacing_pixels) + 2;
     field.nodes_v = static_cast<int>((camera.height - 1) / field.spacing_pixels) + 2;
     return field;
 }
 
 Eigen::VectorXd prior_variances(const SensorField& field, const SensorModel& sensor) {
-    // An unknown that is known to be nothing keeps a variance that numbers can hold.
+    // A variance of 0 cannot be inverted: an error that the sensor does not have keeps one that is negligible.
     constexpr double kLeastVariance = 1e-14;
     Eigen::VectorXd variances = Eigen::VectorXd::Constant(
         field.num_unknowns(), std::max(kLeastVariance, sensor.systematic_sigma_m * sensor.systematic_sigma_m));

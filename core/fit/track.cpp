@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/check.hpp"
+
 namespace nearpose {
 namespace {
 
@@ -15,7 +17,8 @@ Twist twist_about(const Pose& from, const Pose& to, const Eigen::Vector3d& centr
     return twist;
 }
 
-// Of the twist about the centre, from an error of the camera's motion: rotation and translation in camera axes.
+// Covariance of the twist about the centre that an error of the camera's motion causes. That error is a rotation and a
+// translation in camera axes.
 Matrix6d motion_covariance(const Pose& camera_from_object, const Eigen::Vector3d& centre_in_object, double rotation_rad,
                            double translation_m) {
     const Eigen::Matrix3d object_from_camera = camera_from_object.rotation_matrix().transpose();
@@ -36,14 +39,16 @@ void add_to_pose(Track& track, double rotation_rad, double translation_m) {
     }
 }
 
-// The object's own motion is what is left of the correction once the prediction's spread is taken off.
-void learn_motion(const Track& predicted, Track& corrected, bool rejected, const Eigen::Vector3d& centre) {
-    constexpr double kKept = 0.7;  // a frame: three frames of standing still are believed
+// The object's own motion is what the spread of the prediction does not explain of the correction. Where the prediction
+// was rejected, all of the correction is the object's motion.
+void learn_motion(const Track& predicted, Track& corrected, bool rejected, const Eigen::Vector3d& centre,
+                  const TrackOptions& options) {
+    const double kept = options.object_motion_kept;
     const Twist moved = twist_about(predicted.camera_from_object, corrected.camera_from_object, centre);
     const auto learned = [&](double before, const Eigen::Vector3d& part, double expected) {
         const double unexplained = std::max(0.0, part.squaredNorm() - (rejected ? 0.0 : expected));
         return std::sqrt(rejected ? std::max(before * before, unexplained)
-                                  : kKept * before * before + (1.0 - kKept) * unexplained);
+                                  : kept * before * before + (1.0 - kept) * unexplained);
     };
     ObjectMotion& motion = corrected.object_motion;
     motion.rotation_rad =
@@ -53,6 +58,12 @@ void learn_motion(const Track& predicted, Track& corrected, bool rejected, const
 }
 
 }  // namespace
+
+void validate(const TrackOptions& options) {
+    check_option("track.contradicted_chi_square", options.contradicted_chi_square, 0.0, 1e6);
+    check_option("track.independent_errors", options.independent_errors, 0.0, 1.0);
+    check_option("track.object_motion_kept", options.object_motion_kept, 0.0, 1.0);
+}
 
 void move_track(Track& track, const std::optional<Pose>& now_from_before, const MotionNoise& noise,
                 const Eigen::Vector3d& centre_in_object) {
@@ -67,32 +78,36 @@ void move_track(Track& track, const std::optional<Pose>& now_from_before, const 
     add_to_pose(track, track.object_motion.rotation_rad, track.object_motion.translation_m);
 }
 
-bool contradicts(const Track& predicted, const JointFit& observed, const Eigen::Vector3d& centre_in_object) {
-    constexpr double kRejectedBeyond = 22.46;  // 99.9 % of chi-square with 6 degrees of freedom
+bool contradicts(const Track& predicted, const JointFit& observed, const Eigen::Vector3d& centre_in_object,
+                 const TrackOptions& options) {
     const Twist apart = twist_about(observed.camera_from_object, predicted.camera_from_object, centre_in_object);
     const Matrix6d sum = predicted.covariance + observed.covariance;
-    return apart.dot(sum.llt().solve(apart)) > kRejectedBeyond;
+    return apart.dot(sum.llt().solve(apart)) > options.contradicted_chi_square;
 }
 
-Track correct_track(const Track& predicted, const JointFit& observed, const Eigen::Vector3d& centre_in_object) {
+Track correct_track(const Track& predicted, const JointFit& observed, const Eigen::Vector3d& centre_in_object,
+                    const TrackOptions& options) {
     const Twist to_prediction =
         twist_about(observed.camera_from_object, predicted.camera_from_object, centre_in_object);
-    const bool rejected = contradicts(predicted, observed, centre_in_object);
+    const bool rejected = contradicts(predicted, observed, centre_in_object, options);
     Track track{observed.camera_from_object, observed.covariance, predicted.object_motion,
                 observed.constant_covariance};
     if (!rejected) {
-        // v^T P v = d and v^T R v = 1 for the columns v of V: in V's dual basis both are diagonal.
+        // For the columns v of V, v^T P v = d and v^T R v = 1, with P of the prediction and R of the observation: in
+        // the dual basis of V both are diagonal.
         const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6d> solver(predicted.covariance, observed.covariance);
         const Matrix6d V = solver.eigenvectors();
         const Matrix6d dual = V.transpose().inverse();
         const Eigen::Array<double, 6, 1> d = solver.eigenvalues().array().max(1e-12);
-        const Eigen::Array<double, 6, 1> of_prediction = 1.0 / (1.0 + d);  // its share of the mean
-        const Eigen::Array<double, 6, 1> variances = 0.5 * (d * of_prediction + d.min(1.0));
-        const Twist shift = dual * (of_prediction * (V.transpose() * to_prediction).array()).matrix();
+        const Eigen::Array<double, 6, 1> share = 1.0 / (1.0 + d);  // of the prediction in the mean
+        const Eigen::Array<double, 6, 1> kalman = d * share, better = d.min(1.0);
+        const Eigen::Array<double, 6, 1> variances =
+            options.independent_errors * kalman + (1.0 - options.independent_errors) * better;
+        const Twist shift = dual * (share * (V.transpose() * to_prediction).array()).matrix();
         track.camera_from_object = perturb_about(observed.camera_from_object, shift, centre_in_object);
         track.covariance = dual * variances.matrix().asDiagonal() * dual.transpose();
     }
-    learn_motion(predicted, track, rejected, centre_in_object);
+    learn_motion(predicted, track, rejected, centre_in_object, options);
     return track;
 }
 

@@ -3,22 +3,22 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <utility>
+
+#include "core/base/statistics.hpp"
 
 namespace nearpose {
 
 double unit_sigma(std::vector<double> scaled_residuals) {
     if (scaled_residuals.empty()) return 0.0;
-    constexpr double kMedianOfUnitNormal = 0.6745;  // of its absolute value
-    const auto middle = scaled_residuals.begin() + static_cast<std::ptrdiff_t>(scaled_residuals.size() / 2);
-    std::nth_element(scaled_residuals.begin(), middle, scaled_residuals.end());
-    return *middle / kMedianOfUnitNormal;
+    return median(std::move(scaled_residuals)) / kMedianOfAbsoluteNormal;
 }
 
 namespace {
 
-// Of a group whose data say T, tridiagonal, and whose prior's inverse variance is `inverse`: |estimate|^2 + the trace
-// of the posterior's covariance. T + inverse I is factored from both ends: what either end leaves of a diagonal element
-// gives the inverse's.
+// |estimate|^2 + trace of the posterior covariance, for a group with tridiagonal information T and prior I / `inverse`.
+// T + inverse I is factored from both ends. What the two factorisations leave of a diagonal element gives the diagonal
+// element of the inverse, in linear time.
 double sum_of_squares(const Eigen::VectorXd& diagonal, const Eigen::VectorXd& beside, double inverse,
                       const Eigen::VectorXd& gradient) {
     const Eigen::Index count = diagonal.size();
@@ -40,15 +40,12 @@ double sum_of_squares(const Eigen::VectorXd& diagonal, const Eigen::VectorXd& be
 
 }  // namespace
 
-double group_variance_factor(const GroupProblem& problem) {
-    constexpr int kSteps = 4;
-    constexpr Eigen::Index kFewest = 3;
-    if (problem.count < kFewest) return 1.0;
+double group_variance_factor(const GroupProblem& problem, const GroupVarianceOptions& options) {
+    if (problem.count < options.min_count) return 1.0;
     std::vector<Eigen::Index> group, others;
     for (Eigen::Index i = 0; i < problem.gradient.size(); ++i)
         (i >= problem.first && i < problem.first + problem.count ? group : others).push_back(i);
-    // What the data say of the group alone, once the others are marginalised out. Its eigenvalues give the trace of the
-    // posterior for every variance.
+    // The group's own problem, with the others marginalised out (Schur complement).
     Eigen::MatrixXd of_others = problem.information(others, others);
     of_others.diagonal() += problem.prior_variances(others).cwiseInverse();
     const Eigen::LLT<Eigen::MatrixXd> solver(of_others);
@@ -57,12 +54,12 @@ double group_variance_factor(const GroupProblem& problem) {
         problem.information(group, group) - coupling.transpose() * solver.solve(coupling);
     const Eigen::VectorXd gradient =
         problem.gradient(group) - coupling.transpose() * solver.solve(problem.gradient(others));
-    // The same in tridiagonal form, which is solved and inverted in no time for every variance.
+    // In tridiagonal form it is solved and inverted in linear time for every variance that is tried.
     const Eigen::Tridiagonalization<Eigen::MatrixXd> tridiagonal(information);
     const Eigen::VectorXd turned_gradient = tridiagonal.matrixQ().adjoint() * gradient;
     const double prior = problem.prior_variances[problem.first];
     double factor = 1.0;
-    for (int step = 0; step < kSteps; ++step) {
+    for (int step = 0; step < options.steps; ++step) {
         const double inverse = 1.0 / (factor * prior);
         const double squares =
             sum_of_squares(tridiagonal.diagonal(), tridiagonal.subDiagonal(), inverse, turned_gradient);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/base/statistics.hpp"
+
 namespace nearpose {
 namespace {
 
@@ -141,7 +143,6 @@ CandidateCloud sample_candidates(const OrganisedImage& image, const PinholeCamer
 double measured_noise_factor(const OrganisedImage& image, const PinholeCamera& camera,
                              const CandidateExtent& candidates, const SensorModel& sensor,
                              const NoiseOptions& options) {
-    constexpr double kMedianOfNormal = 0.6745;  // of the absolute value, at standard deviation 1
     const int reach = options.reach_pixels;
     std::vector<double> ratios;
     const int stride = std::max(1, static_cast<int>(std::sqrt(candidates.count / options.samples)));
@@ -158,9 +159,7 @@ double measured_noise_factor(const OrganisedImage& image, const PinholeCamera& c
         }
     }
     if (ratios.empty() || ratios.size() < static_cast<std::size_t>(options.min_samples)) return 1.0;
-    const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-    std::nth_element(ratios.begin(), middle, ratios.end());
-    return std::clamp(*middle / kMedianOfNormal, options.least_factor, options.most_factor);
+    return std::clamp(median(std::move(ratios)) / kMedianOfAbsoluteNormal, options.least_factor, options.most_factor);
 }
 
 }  // namespace nearpose

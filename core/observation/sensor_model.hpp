@@ -23,6 +23,9 @@ struct SensorModel {
     double min_range_m = 0.03;  // nearer measurements are none [m]
     double max_range_m = 5.0;   // farther measurements are none [m]
 
+    // Over which pixels share the fine errors [pixels of the image].
+    double fine_length_pixels() const { return 0.25 * systematic_length_pixels; }
+
     // Standard deviation of one pixel's depth along the optical axis, for a surface seen face on [m].
     double sigma_m(double depth_m) const { return sigma_floor_m + sigma_per_square_metre * depth_m * depth_m; }
 

@@ -13,9 +13,9 @@ void describe_modes(std::vector<Mode>& modes, const std::optional<Matrix6d>& cov
     const int count = static_cast<int>(modes.size());
     const bool alone = count == 1 && covariance_if_alone;
     parallel_for(count, frame.options.num_threads, [&](int k) {
-        modes[k].covariance =
-            about_origin(alone ? *covariance_if_alone : covariance_at(modes[k].camera_from_object, context),
-                         frame.model.centre_in_object());
+        modes[k].covariance = about_origin(
+            alone ? *covariance_if_alone : covariance_at(modes[k].camera_from_object, context, frame.method().fit),
+            frame.model.centre_in_object());
     });
 }
 
@@ -35,7 +35,7 @@ Assessment assess(UpdateResult& result, const Belief& belief, const std::optiona
     result.camera_from_object = pose;
     result.cost = belief.tracked->cost;
     std::optional<Matrix6d> observed = fit_covariance;  // by this observation alone
-    if (!belief.track) observed = covariance_at(pose, context);
+    if (!belief.track) observed = covariance_at(pose, context, frame.method().fit);
     result.covariance = about_origin(belief.track ? belief.track->whole_covariance() : *observed, centre);
     if (!estimated) observed.reset();
     result.observability = observability_of(observed.value_or(kOneMetre * Matrix6d::Identity()),

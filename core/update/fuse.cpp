@@ -37,14 +37,14 @@ Matrix6d correct(Belief& belief, const Choice& choice, const Situation& situatio
     const Pose& chosen = choice.mode.camera_from_object;
     const PixelGrid grid = ray_grid_to_fit(frame, chosen, fit_rays(situation, frame));
     const StepContext context = frame.context(ledger.measured(grid, frame.observation), frame.method().step);
-    const JointFit fit = fit_jointly(chosen, context);
+    const JointFit fit = fit_jointly(chosen, context, frame.method().fit);
     const Eigen::Vector3d centre = frame.model.centre_in_object();
     if (!belief.track || choice.replaces_tracked)
         belief.track = Track{fit.camera_from_object, fit.covariance, {}, fit.constant_covariance};
-    else if (!contradicts(*belief.track, fit, centre) ||
+    else if (!contradicts(*belief.track, fit, centre, frame.method().track) ||
              outweighs_prediction(fit.camera_from_object, belief.track->camera_from_object, context, belief.lock,
                                   situation, frame.method()))
-        belief.track = correct_track(*belief.track, fit, centre);
+        belief.track = correct_track(*belief.track, fit, centre, frame.method().track);
     belief.tracked->camera_from_object = belief.track->camera_from_object;
     return fit.covariance + fit.constant_covariance;
 }

@@ -63,7 +63,7 @@ TEST(PixelCost, ASmallErrorInDepthCostsItsSquare) {
     const Observation observation = observe_part(true);
     const double sigma_m = observation.sigma_m(0.45);
     // Seen face on, moved by half a sigma: r^2 / truncation^2 = 0.25 / 9, but for the towers' own distance and sigma.
-    // At the outline a few rays meet another surface.
+    // A few rays at the outline meet another surface.
     const PixelCost cost = cost_at(shifted(0, 0, 0.5 * sigma_m), observation);
     const int others = cost.judged - cost.agreeing;
     EXPECT_LT(others, 0.05 * cost.judged);
@@ -78,16 +78,16 @@ TEST(PixelCost, ModelOverSeenBackgroundAndMissingModelCostFully) {
     EXPECT_NEAR(cost.cost, 1.0, 1e-9);
 }
 
-TEST(PixelCost, ModelBehindTheBackgroundMayBeHidden) {
+TEST(PixelCost, ModelBehindTheBackgroundMayBeOccluded) {
     const Observation observation = observe_part(true);
     const Pose behind_wall = shifted(0.5, 0, 1.0);
     const PixelCost cost = cost_at(behind_wall, observation);
     EXPECT_GT(cost.occluded, 15);
-    const double hidden = 0.3 * cost.occluded, missing = cost.missing_model;
-    EXPECT_NEAR(cost.cost, (hidden + missing) / cost.judged, 1e-9);
+    const double occluded = 0.3 * cost.occluded, missing = cost.missing_model;
+    EXPECT_NEAR(cost.cost, (occluded + missing) / cost.judged, 1e-9);
 }
 
-TEST(PixelCost, MissingDepthSaysNothing) {
+TEST(PixelCost, PixelsWithoutDepthAreNotJudged) {
     DepthImage image = test::render(kPart, kTruth, kCamera, 0.8F, nullptr);
     Mask mask;
     test::render(kPart, kTruth, kCamera, 0.8F, &mask);
@@ -120,7 +120,7 @@ TEST(PixelCost, TurnedByHalfATurnIsWorse) {
     }
 }
 
-TEST(PixelCost, WithoutAMaskModelDeepBeforeWhatIsMeasuredCostsMore) {
+TEST(PixelCost, WithoutAMaskDeepFreeSpaceViolationsCostMore) {
     const Observation open = observe_part(false), segmented = observe_part(true);
     const Pose beside = shifted(0.2, 0, 0);  // before the wall, which is 0.35 to 0.44 m behind
     PixelCostOptions options;
@@ -133,17 +133,18 @@ TEST(PixelCost, WithoutAMaskModelDeepBeforeWhatIsMeasuredCostsMore) {
         return cost.cost * cost.judged - shallow.cost * shallow.judged;
     };
     const double all = (options.free_space_cost - 1.0) * shallow.free_space_violations;
-    EXPECT_NEAR(more_than_shallow(0.45), 0.0, 1e-9) << "none is so deep";
-    EXPECT_NEAR(more_than_shallow(0.05), all, 0.02 * all) << "nearly all are twice as deep";
+    EXPECT_NEAR(more_than_shallow(0.45), 0.0, 1e-9) << "no violation is so deep";
+    EXPECT_NEAR(more_than_shallow(0.05), all, 0.02 * all) << "nearly all are twice as deep as that";
     const double some = more_than_shallow(0.25);  // by 0.4 to 0.76 of it
     EXPECT_GT(some, 0.4 * all);
     EXPECT_LT(some, 0.76 * all);
-    EXPECT_EQ(cost_at(beside, segmented, options).cost, cost_at(beside, segmented).cost) << "the mask tells";
+    EXPECT_EQ(cost_at(beside, segmented, options).cost, cost_at(beside, segmented).cost)
+        << "a mask makes depth irrelevant";
 }
 
-// A plate before most of the part, as a gripper's palm: of all poses in which a face lies in the plate none explains as
-// much as the truth, since what reaches beyond the plate would hide what is seen there.
-TEST(PixelCost, APartBehindAPlateExplainsMoreThanOneLaidIntoThePlate) {
+// A plate, such as a gripper's palm, occludes most of the part. No pose with a face in the plate explains as much as
+// the true pose: what of the model reaches beyond the plate's edge would occlude the background that is seen there.
+TEST(PixelCost, APartBehindAPlateExplainsMoreThanOneAlignedWithThePlate) {
     constexpr float kPlate_m = 0.30F;
     DepthImage image = test::render(kPart, kTruth, kCamera, 0.8F, nullptr);
     for (int v = 20; v < 100; ++v)
@@ -158,13 +159,13 @@ TEST(PixelCost, APartBehindAPlateExplainsMoreThanOneLaidIntoThePlate) {
                     best = std::max(best, cost_at(shifted(x, y, kPlate_m - front_m), observation, options).gain);
         return best;
     };
-    EXPECT_GT(best_on_plate(), cost_at(kTruth, observation, options).gain) << "or the plate is no trap";
+    EXPECT_GT(best_on_plate(), cost_at(kTruth, observation, options).gain) << "otherwise this is no trap";
     options.free_space_depth_m = 0.05 * kPart.extent().diameter_m();
     EXPECT_LT(best_on_plate(), cost_at(kTruth, observation, options).gain);
 }
 
-// However large it is.
-TEST(PixelCost, AFaceLaidIntoALargerPlaneExplainsNothing) {
+// However large the face is.
+TEST(PixelCost, AFaceAlignedWithALargerPlaneExplainsNothing) {
     constexpr float kWall_m = 0.3F;
     const Observation wall = make_observation(
         DepthImage{kCamera.width, kCamera.height,
@@ -176,19 +177,19 @@ TEST(PixelCost, AFaceLaidIntoALargerPlaneExplainsNothing) {
         nearest_m = std::min(nearest_m, static_cast<float>((kTruth * point.cast<double>()).z()));
     PixelCostOptions options;
     options.with_outline = true;
-    const PixelCost laid = cost_at(shifted(0, 0, kWall_m - nearest_m), wall, options);
-    EXPECT_GT(laid.agreeing, 50);
-    EXPECT_GT(laid.coplanar_share(), 0.9);
-    const double within = laid.gain - (options.unexplained_cost - options.outline_cost) * laid.coplanar;
-    EXPECT_LT(within, 0.25 * options.unexplained_cost * laid.agreeing);
-    EXPECT_LT(laid.gain, 0.0);
+    const PixelCost aligned = cost_at(shifted(0, 0, kWall_m - nearest_m), wall, options);
+    EXPECT_GT(aligned.agreeing, 50);
+    EXPECT_GT(aligned.coplanar_share(), 0.9);
+    const double within = aligned.gain - (options.unexplained_cost - options.outline_cost) * aligned.coplanar;
+    EXPECT_LT(within, 0.25 * options.unexplained_cost * aligned.agreeing);
+    EXPECT_LT(aligned.gain, 0.0);
     const PixelCost truth = cost_at(kTruth, observe_part(false), options);
     EXPECT_LT(truth.coplanar_share(), 0.1);
     EXPECT_GT(truth.gain, 0.45 * truth.agreeing) << "an object that stands out keeps what it explains";
 }
 
-// Of samples five times as dense as the pixels the nearest in each, as a rasteriser sees them; with `every` above 1
-// only in one of so many pixels.
+// The view of a rasteriser: the nearest sample in each pixel, of samples five times as dense as the pixels. With
+// `every` above 1, in one of so many pixels only.
 View rasterised(const Pose& camera_from_object, const PinholeCamera& camera, int every) {
     constexpr int kDensity = 5;
     const PinholeCamera fine{kDensity * camera.width, kDensity * camera.height,   kDensity * camera.fx,
@@ -216,9 +217,10 @@ TEST(PixelCost, SamplesAreComparedOnThePixelsRays) {
     const DepthImage image = test::render(kPart, tilted, kCamera, 0.8F, nullptr);
     const ObservedGrid observed = observe(make_observation(image, kCamera, {}), kGrid);
     View view = rasterised(tilted, observed.camera, 1);
-    EXPECT_LT(pixel_cost(view, tilted, observed, {}).agreement(), 0.5) << "where they are, they are too near";
+    EXPECT_LT(pixel_cost(view, tilted, observed, {}).agreement(), 0.5)
+        << "the nearest sample of a pixel lies before its ray's point";
     view.of_samples = true;
-    EXPECT_GT(pixel_cost(view, tilted, observed, {}).agreement(), 0.8) << "but where an edge crosses the pixel";
+    EXPECT_GT(pixel_cost(view, tilted, observed, {}).agreement(), 0.8) << "all but the pixels that an edge crosses";
 }
 
 TEST(PixelCost, GapsBetweenSamplesAreNoOutline) {
@@ -226,7 +228,7 @@ TEST(PixelCost, GapsBetweenSamplesAreNoOutline) {
     View view = rasterised(kTruth, observed.camera, 4);
     PixelCostOptions options;
     options.with_outline = true;
-    EXPECT_GT(pixel_cost(view, kTruth, observed, options).coplanar_share(), 0.8) << "they look like one";
+    EXPECT_GT(pixel_cost(view, kTruth, observed, options).coplanar_share(), 0.8) << "gaps look like an outline";
     view.of_samples = true;
     EXPECT_LT(pixel_cost(view, kTruth, observed, options).coplanar_share(), 0.2);
 }

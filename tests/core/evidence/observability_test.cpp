@@ -13,17 +13,18 @@ Matrix6d diagonal(const Twist& sigmas) {
     return Matrix6d(sigmas.cwiseAbs2().asDiagonal());
 }
 
-TEST(Observability, NamesWhatIsOpenAndTheWorstFirst) {
+TEST(Observability, NamesTheUndeterminedDirectionsWorstFirst) {
     Twist sigmas;  // a flat face, normal z: slides along x and y, turns about z
     sigmas << 0.001, 0.001, 0.5, 0.3, 0.2, 0.0001;
     const Observability observability = observability_of(diagonal(sigmas), kRadius_m, kWeak_m);
     EXPECT_EQ(observability.weak, (std::vector<std::string>{"slides along x", "slides along y", "turns about z"}));
     EXPECT_NEAR(observability.sigmas_m[0], 0.3, 1e-9);
-    EXPECT_NEAR(observability.sigmas_m[2], 0.5 * kRadius_m, 1e-9) << "a turn counts with the way at the radius";
+    EXPECT_NEAR(observability.sigmas_m[2], 0.5 * kRadius_m, 1e-9)
+        << "a rotation counts as the shift of a point at the radius";
     for (int k = 1; k < 6; ++k) EXPECT_LE(observability.sigmas_m[k], observability.sigmas_m[k - 1]);
 }
 
-TEST(Observability, NothingIsWeakWhereAllIsKnown) {
+TEST(Observability, NoDirectionIsWeakWhereAllAreDetermined) {
     const Observability observability = observability_of(diagonal(Twist::Constant(0.0001)), kRadius_m, kWeak_m);
     EXPECT_TRUE(observability.weak.empty());
 }

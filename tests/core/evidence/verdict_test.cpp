@@ -8,8 +8,8 @@
 namespace nearpose {
 namespace {
 
-// Everything speaks for the estimate.
-Evidence convincing() {
+// Passes every test.
+Evidence flawless() {
     Evidence evidence;
     evidence.seen = true;
     evidence.pixels.segmented = true;
@@ -28,39 +28,39 @@ Verdict verdict_of(const Evidence& evidence) {
     return judge(evidence, Tolerance{}, Symmetries{});
 }
 
-TEST(Verdict, AcceptsWhatAllEvidenceSpeaksFor) {
-    EXPECT_EQ(verdict_of(convincing()), Verdict::kAccept);
+TEST(Verdict, AcceptsAPoseThatPassesEveryTest) {
+    EXPECT_EQ(verdict_of(flawless()), Verdict::kAccept);
 }
 
-TEST(Verdict, NothingSeenOrContradictedIsLost) {
-    Evidence evidence = convincing();
+TEST(Verdict, APoseThatIsNotSeenOrIsContradictedIsLost) {
+    Evidence evidence = flawless();
     evidence.seen = false;
     EXPECT_EQ(verdict_of(evidence), Verdict::kLost);
-    evidence = convincing();
+    evidence = flawless();
     evidence.pixels.contradicted = 900;
     EXPECT_EQ(verdict_of(evidence), Verdict::kLost);
 }
 
-TEST(Verdict, EachDoubtAloneIsEnoughToLookAgain) {
-    const std::vector<std::function<void(Evidence&)>> doubts = {
+TEST(Verdict, OneFailedTestIsEnoughToContinue) {
+    const std::vector<std::function<void(Evidence&)>> failures = {
         [](Evidence& e) { e.pixels.contradicted = 150; },                      // much of what is seen disagrees
-        [](Evidence& e) { e.pixels.model_rays = 10000; },                      // hardly anything of it is seen
-        [](Evidence& e) { e.pixels.coplanar = 80; },                           // the surface goes on beyond its outline
-        [](Evidence& e) { e.pixels.missing_model = 5000; },                    // the mask holds much more
+        [](Evidence& e) { e.pixels.model_rays = 10000; },                      // hardly any of the model is seen
+        [](Evidence& e) { e.pixels.coplanar = 80; },                           // coplanar with its surroundings
+        [](Evidence& e) { e.pixels.missing_model = 5000; },                    // the mask is much larger than the model
         [](Evidence& e) { e.alternatives_weight = 0.3; },                      // another pose explains it as well
-        [](Evidence& e) { e.alternatives_tried = false; },                     // nobody looked for one
+        [](Evidence& e) { e.alternatives_tried = false; },                     // no alternative was tried
         [](Evidence& e) { e.covariance_about_centre(4, 4) = 0.002 * 0.002; },  // known to 5 mm only
         [](Evidence& e) { e.covariance_about_centre(0, 0) = 0.02 * 0.02; },    // known to 3 degrees only
     };
-    for (std::size_t k = 0; k < doubts.size(); ++k) {
-        Evidence evidence = convincing();
-        doubts[k](evidence);
+    for (std::size_t k = 0; k < failures.size(); ++k) {
+        Evidence evidence = flawless();
+        failures[k](evidence);
         EXPECT_EQ(verdict_of(evidence), Verdict::kContinue) << k;
     }
 }
 
-TEST(Verdict, WhatATurnAboutAnAxisOfRevolutionLeavesOpenDoesNotCount) {
-    Evidence evidence = convincing();
+TEST(Verdict, RotationAboutAnAxisOfRevolutionDoesNotCount) {
+    Evidence evidence = flawless();
     evidence.covariance_about_centre(2, 2) = 1.0;
     Symmetries shaft;
     shaft.continuous.push_back({Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero()});
@@ -68,8 +68,8 @@ TEST(Verdict, WhatATurnAboutAnAxisOfRevolutionLeavesOpenDoesNotCount) {
     EXPECT_EQ(judge(evidence, Tolerance{}, Symmetries{}), Verdict::kContinue);
 }
 
-TEST(Verdict, AnImprecisePoseMayConvince) {
-    Evidence evidence = convincing();
+TEST(Verdict, AnImprecisePoseMayBeVerified) {
+    Evidence evidence = flawless();
     evidence.covariance_about_centre = Matrix6d::Identity();
     EXPECT_TRUE(is_verified(evidence));
     evidence.alternatives_weight = 0.3;
@@ -77,7 +77,7 @@ TEST(Verdict, AnImprecisePoseMayConvince) {
 }
 
 TEST(Verdict, ToleranceIsTheUsers) {
-    Evidence evidence = convincing();
+    Evidence evidence = flawless();
     evidence.covariance_about_centre(4, 4) = 0.001 * 0.001;  // 90 % region: 2.5 mm
     EXPECT_EQ(judge(evidence, Tolerance{0.002, 0.0175}, Symmetries{}), Verdict::kContinue);
     EXPECT_EQ(judge(evidence, Tolerance{0.003, 0.0175}, Symmetries{}), Verdict::kAccept);

@@ -4,6 +4,8 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include "core/base/random.hpp"
 #include "core/fit/sensor_field.hpp"
@@ -29,7 +31,7 @@ SensorModel sensor_of_test() {
     return sensor;
 }
 
-// Depth of the part with white noise, an error field over the image and a scale.
+// Depth of the part with white noise, an error field over the image and an error of scale.
 Observation observe_with_errors(const SensorModel& sensor, const Eigen::VectorXd& errors, std::uint64_t seed) {
     Mask mask;
     DepthImage image = test::render(kPart, kTruth, kCamera, 0.9F, &mask);
@@ -47,9 +49,9 @@ Observation observe_with_errors(const SensorModel& sensor, const Eigen::VectorXd
     return make_observation(image, kCamera, mask, options);
 }
 
-JointFit fit(const Observation& observation, const Pose& start) {
+JointFit fit(const Observation& observation, const Pose& start, const FitOptions& options = {}) {
     const ObservedGrid observed = observe(observation, {0, 0, 1, kCamera.width, kCamera.height});
-    return fit_jointly(start, {kPart, kSolver, observation, observed, kStep, Cost::kPixels, {}, true});
+    return fit_jointly(start, {kPart, kSolver, observation, observed, kStep, Cost::kPixels, {}, true}, options);
 }
 
 Twist error_of(const Pose& pose) {
@@ -96,7 +98,7 @@ TEST(JointFit, FindsTheExactPoseOfAnExactImage) {
 }
 
 TEST(JointFit, TheCovarianceIsThatOfTheErrorsOverManySensors) {
-    // Each trial is another sensor: its field and scale are drawn from what the model says of them.
+    // Each trial is another sensor: its field and scale are drawn from their prior.
     const SensorModel sensor = sensor_of_test();
     const SensorField field = field_over(kCamera, sensor);
     const Eigen::VectorXd variances = prior_variances(field, sensor);
@@ -125,7 +127,7 @@ TEST(JointFit, ASensorWithSharedErrorsIsTrustedLess) {
     for (int i = 0; i < 6; ++i) EXPECT_GT(shared(i, i), 2.0 * alone(i, i)) << i;
 }
 
-// The part as a workshop made it: larger than its CAD by a share of itself.
+// A part that was made larger than its CAD by a share of itself.
 test::BoxViewGenerator enlarged_part(double share) {
     std::vector<test::Box> boxes = test::asymmetric_part();
     const Eigen::Vector3d centre = kPart.extent().centre_in_object();
@@ -144,10 +146,10 @@ Observation observe_exactly(const test::BoxViewGenerator& part, const SensorMode
     return make_observation(image, kCamera, mask, options);
 }
 
-TEST(JointFit, APartLargerThanItsCadIsOffByAStepOfTheConstantCovariance) {
+TEST(JointFit, TheConstantCovarianceIsThatOfAPartLargerThanItsCad) {
     constexpr double kShare = 0.001;
     SensorModel sensor = sensor_of_test();
-    sensor.systematic_sigma_m = 0.0;  // nothing but the pose may give way
+    sensor.systematic_sigma_m = 0.0;  // so that only the pose can explain the difference
     sensor.depth_scale_sigma = 0.0;
     const JointFit exact = fit(observe_exactly(kPart, sensor), kTruth);
     const JointFit larger = fit(observe_exactly(enlarged_part(kShare), sensor), kTruth);
@@ -156,11 +158,11 @@ TEST(JointFit, APartLargerThanItsCadIsOffByAStepOfTheConstantCovariance) {
     const Matrix6d squared = step * step.transpose();
     EXPECT_GT(step.tail<3>().norm(), 2e-5);
     const Eigen::Matrix3d of_translation = squared.bottomRightCorner<3, 3>();
-    const Eigen::Matrix3d told = larger.constant_covariance.bottomRightCorner<3, 3>();
-    EXPECT_LT((told - of_translation).norm(), 0.4 * of_translation.norm());
+    const Eigen::Matrix3d predicted = larger.constant_covariance.bottomRightCorner<3, 3>();
+    EXPECT_LT((predicted - of_translation).norm(), 0.4 * of_translation.norm());
 }
 
-TEST(JointFit, AFieldLargerThanTheSensorsIsReckonedWith) {
+TEST(JointFit, AFieldLargerThanTheSensorModelsWidensTheCovariance) {
     const SensorModel sensor = sensor_of_test();
     const SensorField field = field_over(kCamera, sensor);
     const Eigen::VectorXd variances = prior_variances(field, sensor);
@@ -175,17 +177,38 @@ TEST(JointFit, AFieldLargerThanTheSensorsIsReckonedWith) {
         const Twist error = error_of(fitted.camera_from_object);
         mean_squared_distance += error.dot(fitted.covariance.ldlt().solve(error)) / kTrials;
     }
-    EXPECT_LT(mean_squared_distance, 15.0) << "a covariance of the sensor's model alone gives up to 6 * 4^2";
+    EXPECT_LT(mean_squared_distance, 15.0) << "the covariance of the sensor model alone would give up to 6 * 4^2";
 }
 
-TEST(JointFit, APartThatIsNotItsCadIsTrustedLess) {
+TEST(JointFit, APartThatDiffersFromItsCadIsTrustedLess) {
     const SensorModel sensor = sensor_of_test();
     std::vector<test::Box> boxes = test::asymmetric_part();
-    boxes[1].max += Eigen::Vector3d(0.002, 0.0, 0.003);  // a tower of another casting
+    boxes[1].max += Eigen::Vector3d(0.002, 0.0, 0.003);  // two towers that were cast differently
     boxes[2].max += Eigen::Vector3d(0.0, 0.002, -0.002);
     const JointFit right = fit(observe_exactly(kPart, sensor), kTruth);
     const JointFit wrong = fit(observe_exactly(test::BoxViewGenerator(boxes), sensor), kTruth);
     for (int i = 0; i < 6; ++i) EXPECT_GT(wrong.covariance(i, i), right.covariance(i, i)) << i;
+}
+
+TEST(JointFit, ThePartsScaleIsAsUncertainAsTheOptionsSay) {
+    const Observation observation = observe_exactly(kPart, sensor_of_test());
+    FitOptions options;
+    const Matrix6d once = fit(observation, kTruth, options).constant_covariance;
+    options.part_scale_sigma *= 2.0;
+    const Matrix6d twice = fit(observation, kTruth, options).constant_covariance;
+    EXPECT_LT((twice - 4.0 * once).norm(), 1e-12 * twice.norm());
+}
+
+TEST(JointFit, OptionsOutOfBoundsAreRefusedByName) {
+    FitOptions options;
+    EXPECT_NO_THROW(validate(options));
+    options.rays.huber_sigmas = 0.0;
+    try {
+        validate(options);
+        FAIL() << "accepted";
+    } catch (const std::invalid_argument& error) {
+        EXPECT_NE(std::string(error.what()).find("fit.rays.huber_sigmas"), std::string::npos) << error.what();
+    }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <cmath>
 
 #include "core/base/random.hpp"
@@ -51,8 +52,8 @@ TEST(Track, APredictionIsContradictedBeyondTheChiSquareOfBothSpreads) {
     EXPECT_TRUE(contradicts(track, fit, kCentre));
 }
 
-TEST(Track, TheSpreadOfTheMotionIsThatOfItsScatter) {
-    // Errors of the measured motion, in camera axes about the camera, moved to the twist about the centre.
+TEST(Track, TheAddedSpreadIsTheScatterOfNoisyMotions) {
+    // Errors of the measured motion are drawn in camera axes about the camera, and compared as twists about the centre.
     MotionNoise noise;
     noise.sigma_rotation_rad = 0.004;
     noise.sigma_translation_m = 0.001;
@@ -79,7 +80,7 @@ TEST(Track, AlongWeakDirectionsThePredictionHoldsAlongStrongOnesTheObservationDe
     JointFit observed;
     observed.camera_from_object = perturb_about(kPose, twist(0, 0, 0, 0.03, 0.0004, 0), kCentre);
     observed.covariance = diagonal(0.001, 0.00005);
-    observed.covariance(3, 3) = 0.05 * 0.05;  // x is not seen
+    observed.covariance(3, 3) = 0.05 * 0.05;  // x is hardly observed
     const Track corrected = correct_track(predicted, observed, kCentre);
     const Eigen::Vector3d moved =
         kPose.rotation.conjugate() * (corrected.camera_from_object * kCentre - kPose * kCentre);
@@ -89,6 +90,21 @@ TEST(Track, AlongWeakDirectionsThePredictionHoldsAlongStrongOnesTheObservationDe
     EXPECT_LT(std::sqrt(corrected.covariance(4, 4)), 0.00006);
 }
 
+TEST(Track, WithIndependentErrorsItIsAKalmanFilter) {
+    const Track predicted{kPose, diagonal(0.001, 0.0005), {}};
+    JointFit observed;
+    observed.camera_from_object = perturb_about(kPose, twist(0.001, 0, 0, 0, 0.0003, 0), kCentre);
+    observed.covariance = diagonal(0.002, 0.0004);
+    TrackOptions options;
+    options.independent_errors = 1.0;
+    const Matrix6d kalman = (predicted.covariance.inverse() + observed.covariance.inverse()).inverse();
+    const Matrix6d covariance = correct_track(predicted, observed, kCentre, options).covariance;
+    EXPECT_LT((covariance - kalman).norm(), 1e-9 * kalman.norm());
+    options.independent_errors = 0.0;
+    const Matrix6d shared = correct_track(predicted, observed, kCentre, options).covariance;
+    EXPECT_LT((shared - diagonal(0.001, 0.0004)).norm(), 1e-9 * shared.norm()) << "the better of both, no more";
+}
+
 TEST(Track, StandingStillTheSpreadDoesNotShrinkForEver) {
     Track track{kPose, diagonal(0.002, 0.0003), {}};
     const JointFit observed{kPose, diagonal(0.002, 0.0003), 1000};
@@ -96,10 +112,10 @@ TEST(Track, StandingStillTheSpreadDoesNotShrinkForEver) {
         move_track(track, Pose::identity(), {}, kCentre);
         track = correct_track(track, observed, kCentre);
     }
-    EXPECT_GT(std::sqrt(track.covariance(3, 3)), 0.6 * 0.0003) << "the sensor errs alike in every frame";
+    EXPECT_GT(std::sqrt(track.covariance(3, 3)), 0.6 * 0.0003) << "successive frames share the sensor's errors";
 }
 
-TEST(Track, WhatIsWrongInEveryFrameAlikeIsNotAveragedOut) {
+TEST(Track, ErrorsCommonToAllFramesAreNotAveragedOut) {
     Track track{kPose, diagonal(0.002, 0.0003), {}};
     const JointFit observed{kPose, diagonal(0.002, 0.0003), 1000, diagonal(0.0, 0.0007)};
     for (int frame = 0; frame < 50; ++frame) {
@@ -109,7 +125,7 @@ TEST(Track, WhatIsWrongInEveryFrameAlikeIsNotAveragedOut) {
     EXPECT_NEAR(track.whole_covariance()(3, 3), track.covariance(3, 3) + 0.0007 * 0.0007, 1e-12);
 }
 
-TEST(Track, APredictionThatTheObservationContradictsIsLeftOut) {
+TEST(Track, APredictionThatTheObservationContradictsIsRejected) {
     const Track predicted{kPose, diagonal(0.001, 0.0003), {}};
     JointFit observed;
     observed.camera_from_object = perturb_about(kPose, twist(0, 0, 0, 0.02, 0, 0), kCentre);
@@ -130,7 +146,7 @@ TEST(Track, AMovingObjectIsFollowedWithoutLag) {
         if (frame > 3)
             worst_m = std::max(worst_m, centre_distance_m(track.camera_from_object, observed.camera_from_object));
     }
-    EXPECT_LT(worst_m, 0.0002) << "1 mm a frame, seen to 0.2 mm: less than what it is seen to";
+    EXPECT_LT(worst_m, 0.0002) << "1 mm a frame, observed to 0.2 mm: within that";
 }
 
 TEST(Track, CovariancesMoveBetweenCentreAndOrigin) {

@@ -35,7 +35,7 @@ GroupProblem draw_problem(double true_factor, std::uint64_t seed) {
     return problem;
 }
 
-// The steps as they are defined, with the whole matrix inverted.
+// Expectation maximisation as it is defined, with the whole matrix inverted.
 double naive_factor(const GroupProblem& problem) {
     double factor = 1.0;
     for (int step = 0; step < 4; ++step) {
@@ -51,7 +51,7 @@ double naive_factor(const GroupProblem& problem) {
     return factor;
 }
 
-TEST(VarianceComponents, TheUnitSigmaIsThatOfTheManyWhateverTheFewAre) {
+TEST(VarianceComponents, TheUnitSigmaIsThatOfTheMajorityWhateverTheOutliers) {
     RandomStream random(3, 0, 0, RandomPurpose::kStart);
     std::vector<double> residuals;
     for (int i = 0; i < 20000; ++i) residuals.push_back(std::abs(1.7 * random.gaussian()));
@@ -61,7 +61,7 @@ TEST(VarianceComponents, TheUnitSigmaIsThatOfTheManyWhateverTheFewAre) {
     EXPECT_EQ(unit_sigma({}), 0.0);
 }
 
-TEST(VarianceComponents, TheGroupsFactorIsThatOfTheWholeInverse) {
+TEST(VarianceComponents, TheGroupsFactorIsThatOfTheInvertedMatrix) {
     for (const double true_factor : {0.2, 1.0, 9.0}) {
         const GroupProblem problem = draw_problem(true_factor, 11);
         EXPECT_NEAR(group_variance_factor(problem), naive_factor(problem), 1e-6 * naive_factor(problem));
@@ -79,7 +79,7 @@ TEST(VarianceComponents, TheGroupsFactorIsFoundFromTheData) {
     }
 }
 
-TEST(VarianceComponents, TwoUnknownsSayNothingOfTheirVariance) {
+TEST(VarianceComponents, TwoUnknownsSayTooLittleAboutTheirVariance) {
     GroupProblem problem = draw_problem(100.0, 5);
     problem.count = 2;
     EXPECT_EQ(group_variance_factor(problem), 1.0);
