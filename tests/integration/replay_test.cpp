@@ -17,11 +17,11 @@
 #include <numbers>
 #include <sstream>
 
-#include "apps/estimator_setup.hpp"
-#include "apps/model_symmetries.hpp"
-#include "apps/simulate/parts.hpp"
-#include "apps/simulate/recording.hpp"
-#include "apps/version.hpp"
+#include "apps/base/version.hpp"
+#include "apps/part_model/model_symmetries.hpp"
+#include "apps/runs/estimator_setup.hpp"
+#include "apps/scenes/parts.hpp"
+#include "apps/scenes/recording.hpp"
 #include "core/estimator.hpp"
 
 namespace nearpose {
