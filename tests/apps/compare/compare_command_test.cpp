@@ -1,6 +1,7 @@
 // nearpose compare, run as a user would.
 #include <gtest/gtest.h>
 
+#include "apps/tables/results.hpp"
 #include "tests/apps/support/tiny_scene.hpp"
 
 namespace nearpose::compare {
