@@ -72,13 +72,14 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
         // The default method: the phase says what the frame is worth, and a pose that is not known is searched for.
         Situation situation = situation_of(belief, method);
         belief.pose_before_loss = pose_before_loss(belief, situation.phase, method);
-        const ParticleSet particles = situation.searching() ? search(situation, frame, ledger) : belief.particles;
-        gate_prediction(situation, belief, frame, ledger);
+        SearchResult found{belief.particles, nullptr, {}};
+        if (situation.searching()) found = search(frame, ledger);
+        situation = gate_prediction(after_search(situation, found), belief, frame, ledger);
         belief.lock = after_decision(belief.lock, situation.phase);
 
         // The paper: view, correspondences, gradient steps and weight of every particle; the estimate is the MAP. The
         // default method compares the modes of the posterior with their alternatives.
-        const MovedParticles moved = move_particles(particles, situation, frame, ledger);
+        const MovedParticles moved = move_particles(found.particles, situation, frame, ledger);
         const bool modes_compared = method.hypotheses.modes > 0;
         const Choice choice =
             modes_compared ? choose_mode(belief, moved, situation, frame, ledger) : choose_map(moved, frame);

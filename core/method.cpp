@@ -63,6 +63,8 @@ void validate(const HypothesisOptions& options) {
     check_option("hypotheses.alternatives_period", options.alternatives_period, 1, 1e6);
     check_option("hypotheses.alternatives_refined", options.alternatives_refined, 0, 1000);
     check_option("hypotheses.leaders", options.leaders, 1, 1000);
+    check_option("hypotheses.changes.steps_per_turn", options.changes.steps_per_turn, 2, 360);
+    check_option("hypotheses.changes.max_shift", options.changes.max_shift, 0.0, 10.0);
     check_option("hypotheses.mode_rotation_rad", options.mode_rotation_rad, 0.0, 3.15);
     check_option("hypotheses.mode_translation_diameters", options.mode_translation_diameters, 0.0, 10.0);
 }

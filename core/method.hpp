@@ -30,6 +30,7 @@ struct HypothesisOptions {
     int alternatives_period = 10;  // frames between such trials once the track is confirmed
     int alternatives_refined = 3;  // the best of them
     int leaders = 2;               // modes whose alternatives are tried
+    AlternativeOptions changes;    // which turns and shifts
     // Poses closer than both are one mode.
     double mode_rotation_rad = 0.15;
     double mode_translation_diameters = 0.03;

@@ -106,7 +106,7 @@ std::vector<Mode> best_alternatives(const std::vector<Mode>& leaders, const Situ
     for (std::size_t k = 0; k < used; ++k) {
         const std::vector<Pose> of_leader =
             alternatives_of(leaders[k].camera_from_object, frame.model.extent(), wanted / static_cast<int>(used),
-                            frame.options.seed + k, frame.step);
+                            frame.options.seed + k, frame.step, options.changes);
         proposals.insert(proposals.end(), of_leader.begin(), of_leader.end());
     }
     GradientStep step = frame.method().search.step;

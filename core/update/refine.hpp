@@ -21,6 +21,6 @@ RefinedMode evaluate_prediction(const Pose& predicted, const Situation& situatio
 
 // Compares the image with the predicted pose, where an accepted pose was carried by the arm's measured motion. Where
 // the image agrees, the prediction enters the situation; phase and plan follow.
-void gate_prediction(Situation& situation, const Belief& predicted, const Frame& frame, Ledger& ledger);
+Situation gate_prediction(Situation situation, const Belief& predicted, const Frame& frame, Ledger& ledger);
 
 }  // namespace nearpose

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "core/base/parallel.hpp"
 #include "core/search/sampling.hpp"
@@ -11,24 +12,25 @@
 namespace nearpose {
 namespace {
 
-// Candidates from pairs of oriented points: up to their share of `count`. None without a table of pairs.
-ParticleSet sample_on_pairs(Situation& situation, int count, int draws, const Frame& frame) {
-    ParticleSet particles;
-    if (!situation.window.surfels) return particles;
+// Candidates from pairs of oriented points, best first: up to their share of `count`. None without surfels.
+std::vector<Pose> sample_on_pairs(const SurfelGrid* surfels, int count, int draws, const Frame& frame) {
+    if (surfels == nullptr) return {};
     const SearchOptions& options = frame.method().search;
-    const PreselectionOptions& preselection = frame.method().preselection;
-    const int kept = preselection.tried > 0 ? preselection.tried : preselection.kept;
     const bool segmented = frame.observation.segmented();
     const double share = segmented ? options.pair_share_segmented : options.pair_share_unsegmented;
     const PairDraws wanted{.draws = (segmented ? 1 : options.draws_factor_unsegmented) * draws,
                            .count = static_cast<int>(count * share),
                            .first_stream = static_cast<std::uint64_t>(count),
                            .num_threads = frame.options.num_threads};
-    particles.poses = hypotheses_from_pairs(frame.observation, *frame.model.point_pairs, *situation.window.surfels,
-                                            options, wanted, frame.options.seed, frame.step);
-    const auto first = particles.poses.begin();
-    if (!segmented) situation.best_from_pairs.assign(first, first + std::min(kept, particles.size()));
-    return particles;
+    return hypotheses_from_pairs(frame.observation, *frame.model.point_pairs, *surfels, options, wanted,
+                                 frame.options.seed, frame.step);
+}
+
+// The first of them, which are refined as they are beside the particles' modes.
+std::vector<Pose> best_of(const std::vector<Pose>& from_pairs, const PreselectionOptions& preselection) {
+    const int kept = preselection.tried > 0 ? preselection.tried : preselection.kept;
+    const auto count = std::min(static_cast<std::ptrdiff_t>(kept), std::ssize(from_pairs));
+    return {from_pairs.begin(), from_pairs.begin() + count};
 }
 
 // Candidates on the paper's sphere, shifted so that what is seen of each lies on what is measured.
@@ -48,9 +50,10 @@ ParticleSet sample_on_shifted_sphere(int count, const Frame& frame) {
 // A share of the candidates each for three cases. Among other things the object is found from pairs of oriented points.
 // A whole one in view is found from the centroid of what is seen, which says nothing where no object is segmented. A
 // part of one is found from its surface. Empty if no surface shows a normal.
-ParticleSet sample_from_all(Situation& situation, int count, int draws, const Frame& frame) {
+ParticleSet sample_from_all(std::vector<Pose> from_pairs, int count, const Frame& frame) {
     const Observation& observation = frame.observation;
-    ParticleSet particles = sample_on_pairs(situation, count, draws, frame);
+    ParticleSet particles;
+    particles.poses = std::move(from_pairs);
     const int left = count - particles.size();
     const int on_sphere = observation.segmented() ? static_cast<int>(left * frame.method().search.sphere_share) : 0;
     const ParticleSet centred = sample_on_shifted_sphere(on_sphere, frame);
@@ -81,28 +84,33 @@ std::vector<Pose> best_candidates(const std::vector<Pose>& candidates, const Win
 
 }  // namespace
 
-ParticleSet search(Situation& situation, const Frame& frame, Ledger& ledger) {
-    const SearchOptions& method = frame.method().search;
-    const EstimatorOptions& options = frame.options;
-    if (frame.model.point_pairs) {
-        situation.window.surfels = std::make_shared<const SurfelGrid>(
-            surfels_of(frame.observation, *frame.model.point_pairs, method, options.seed, frame.step));
-    }
+SearchResult search(const Frame& frame, Ledger& ledger) {
+    const SearchOptions& options = frame.method().search;
+    const std::uint64_t seed = frame.options.seed;
+    SearchResult found;
+    if (frame.model.point_pairs)
+        found.surfels = std::make_shared<const SurfelGrid>(
+            surfels_of(frame.observation, *frame.model.point_pairs, options, seed, frame.step));
     const Stopwatch watch;
-    const int wanted = std::max(method.candidates, options.num_particles);
-    const int count =
-        ledger.affordable(Stage::kSearch, wanted, method.least_candidates);  // the next search tries others
-    const auto draws = static_cast<int>(static_cast<double>(method.draws) * count / wanted);
-    ParticleSet particles;
-    if (method.initialisation != Initialisation::kSphere) particles = sample_from_all(situation, count, draws, frame);
-    if (particles.size() == 0)
-        particles = sample_on_sphere(frame.observation, frame.model.extent(), count, options.seed, frame.step);
-    if (method.candidates > 0) particles.poses = best_candidates(particles.poses, situation.window, frame, ledger);
-    particles.negative_log_weights.assign(particles.poses.size(), 0.0);
+    const int wanted = std::max(options.candidates, frame.options.num_particles);
+    // A search that the budget cuts short is followed by one that tries others.
+    const int count = ledger.affordable(Stage::kSearch, wanted, options.least_candidates);
+    const auto draws = static_cast<int>(static_cast<double>(options.draws) * count / wanted);
+    if (options.initialisation != Initialisation::kSphere) {
+        const std::vector<Pose> from_pairs = sample_on_pairs(found.surfels.get(), count, draws, frame);
+        if (!frame.observation.segmented()) found.best_from_pairs = best_of(from_pairs, frame.method().preselection);
+        found.particles = sample_from_all(from_pairs, count, frame);
+    }
+    if (found.particles.size() == 0)
+        found.particles = sample_on_sphere(frame.observation, frame.model.extent(), count, seed, frame.step);
+    const Window everywhere{true, std::nullopt, found.surfels};
+    if (options.candidates > 0)
+        found.particles.poses = best_candidates(found.particles.poses, everywhere, frame, ledger);
+    found.particles.negative_log_weights.assign(found.particles.poses.size(), 0.0);
     ledger.effort.starts = count;
     ledger.seconds.start = watch.elapsed_s();
     ledger.budget.took(Stage::kSearch, count, ledger.seconds.start);
-    return particles;
+    return found;
 }
 
 }  // namespace nearpose

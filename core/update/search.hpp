@@ -6,8 +6,7 @@
 
 namespace nearpose {
 
-// Draws poses from what is seen; the best become the particles. Sets the situation's surfels and its best hypotheses
-// from pairs.
-ParticleSet search(Situation& situation, const Frame& frame, Ledger& ledger);
+// Draws poses from what is seen; the best become the particles.
+SearchResult search(const Frame& frame, Ledger& ledger);
 
 }  // namespace nearpose

@@ -11,6 +11,12 @@ Situation situation_of(const Belief& predicted, const Method& method) {
     return situation;
 }
 
+Situation after_search(Situation situation, const SearchResult& found) {
+    situation.window.surfels = found.surfels;
+    situation.best_from_pairs = found.best_from_pairs;
+    return situation;
+}
+
 std::optional<Pose> pose_before_loss(const Belief& predicted, Phase phase, const Method& method) {
     if (phase != Phase::kSearching)
         return confirmed(predicted.lock, method) ? std::nullopt : predicted.pose_before_loss;

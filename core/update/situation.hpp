@@ -20,17 +20,27 @@ struct Window {
     std::shared_ptr<const SurfelGrid> surfels;
 };
 
+// What a search found.
+struct SearchResult {
+    ParticleSet particles;
+    std::shared_ptr<const SurfelGrid> surfels;  // where it went by pairs of points
+    std::vector<Pose> best_from_pairs;          // its best hypotheses, best first, where nothing is segmented
+};
+
 struct Situation {
     Phase phase = Phase::kSearching;
     Plan plan;  // what the phase is worth
     Window window;
-    std::vector<Pose> best_from_pairs;      // a search's best hypotheses, best first, where nothing is segmented
+    std::vector<Pose> best_from_pairs;      // as found by a search
     std::optional<RefinedMode> prediction;  // the predicted pose, where the image agrees with it
 
     bool searching() const { return phase == Phase::kSearching; }
 };
 
+// By the record of the frames before.
 Situation situation_of(const Belief& predicted, const Method& method);
+// The same after a search: poses are compared where its surfels say something.
+Situation after_search(Situation situation, const SearchResult& found);
 
 // Where the lost pose is by the arm's motion, from a search on until the track is confirmed again: the object may only
 // have been occluded for a while.
