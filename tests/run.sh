@@ -6,5 +6,7 @@ preset=${1:-dev}
 shift || true
 bash third_party_notes/install_packages.sh build test
 cmake --preset "$preset" -DNEARPOSE_TESTS=ON >/dev/null  # the demo turns them off
-cmake --build --preset "$preset"
+# Where the unit tests alone are asked for, the others are not built for nothing.
+[[ "$*" == "-L unit" ]] && target=unit_tests || target=all
+cmake --build --preset "$preset" --target "$target"
 ctest --test-dir "build/$preset" --output-on-failure --no-tests=error -j "$(nproc)" "$@"
