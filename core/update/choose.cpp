@@ -27,10 +27,10 @@ void disambiguate(Choice& choice, Situation situation, const Frame& frame, Ledge
         const double away_m = (mode.camera_from_object * centre - chosen.camera_from_object * centre).norm();
         (away_m < around_m && near.size() < most ? near : far).push_back(mode);
     }
+    situation.window.around = chosen.camera_from_object;
     if (frame.method().hypotheses.alternatives > 0)
         for (const Mode& mode : best_alternatives({chosen}, situation, frame, ledger)) near.push_back(mode);
     move_to_nearest_equivalents(near, frame.model);
-    situation.window.around = chosen.camera_from_object;
     near = refine(near, situation, frame, ledger);
     const double shift = near.front().log_evidence - chosen.log_evidence;
     for (Mode& mode : far) {  // has lost by as much as before
