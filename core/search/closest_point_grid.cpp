@@ -98,19 +98,16 @@ void ClosestPointGrid::propagate(int rounds) {
 void ClosestPointGrid::take_nearest_of_neighbours(const Eigen::Vector3i& voxel, const std::vector<int>& before) {
     constexpr float kFar = 1e30F;
     const Eigen::Vector3f middle = origin_in_object_ + (voxel.cast<float>().array() + 0.5F).matrix() / voxels_per_m_;
-    int& best = voxels_[index_of(voxel)];
+    const std::size_t here = index_of(voxel), row = size_.x(), layer = row * size_.y();
+    int& best = voxels_[here];
     float least = best < 0 ? kFar : (samples_[best].point - middle).squaredNorm();
-    for (int axis = 0; axis < 3; ++axis) {
-        for (const int side : {-1, 1}) {
-            Eigen::Vector3i beside = voxel;
-            beside[axis] += side;
-            const int other = before[index_of(beside)];
-            if (other < 0) continue;
-            const float distance = (samples_[other].point - middle).squaredNorm();
-            if (distance >= least) continue;
-            least = distance;
-            best = other;
-        }
+    for (const std::size_t neighbour : {here - 1, here + 1, here - row, here + row, here - layer, here + layer}) {
+        const int other = before[neighbour];
+        if (other < 0) continue;
+        const float distance = (samples_[other].point - middle).squaredNorm();
+        if (distance >= least) continue;
+        least = distance;
+        best = other;
     }
 }
 

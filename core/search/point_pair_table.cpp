@@ -18,12 +18,6 @@ AngleCells::AngleCells(int count)
     }
 }
 
-int AngleCells::operator()(float cosine) const {
-    const int bin = std::clamp(static_cast<int>((cosine + 1.0F) * kBinsPerUnit), 0, kBins - 1);
-    const int cell = cell_at_largest_[bin];
-    return std::min(count_ - 1, cell + (cosine < smallest_cosine_[cell] ? 1 : 0));
-}
-
 PointPairTable::PointPairTable(const ViewGenerator& views, const SearchOptions& options)
     : options_(options.point_pair_table),
       angle_cells_(options_.angle_cells),

@@ -2,6 +2,7 @@
 // 2010).
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "core/search/closest_point_grid.hpp"
@@ -16,7 +17,11 @@ class AngleCells {
   public:
     explicit AngleCells(int count);
     int count() const { return count_; }
-    int operator()(float cosine) const;
+    int operator()(float cosine) const {  // here, since setting up the table calls it millions of times
+        const int bin = std::clamp(static_cast<int>((cosine + 1.0F) * kBinsPerUnit), 0, kBins - 1);
+        const int cell = cell_at_largest_[bin];
+        return std::min(count_ - 1, cell + (cosine < smallest_cosine_[cell] ? 1 : 0));
+    }
 
   private:
     static constexpr float kBinsPerUnit = 128.0F;  // of the cosine
