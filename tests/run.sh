@@ -9,4 +9,6 @@ cmake --preset "$preset" -DNEARPOSE_TESTS=ON >/dev/null  # the demo turns them o
 # Where the unit tests alone are asked for, the others are not built for nothing.
 [[ "$*" == "-L unit" ]] && target=unit_tests || target=all
 cmake --build --preset "$preset" --target "$target"
+# Several tests run at once, each with threads of its own: a thread that waits must not keep a processor busy.
+export OMP_WAIT_POLICY=passive
 ctest --test-dir "build/$preset" --output-on-failure --no-tests=error -j "$(nproc)" "$@"
