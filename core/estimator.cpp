@@ -7,7 +7,6 @@
 #include "core/update/assess.hpp"
 #include "core/update/choose.hpp"
 #include "core/update/fuse.hpp"
-#include "core/update/hypotheses.hpp"
 #include "core/update/move_particles.hpp"
 #include "core/update/predict.hpp"
 #include "core/update/refine.hpp"
@@ -97,6 +96,14 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
     budget_ = ledger.close(result);
     belief_ = std::move(belief);
     return result;
+}
+
+void PoseEstimator::restore(const Belief& belief) {
+    if (belief.particles.poses.size() != belief.particles.negative_log_weights.size())
+        throw std::invalid_argument("PoseEstimator: the belief to put back has particles without weights");
+    if (belief.tracked.has_value() != (belief.particles.size() > 0))
+        throw std::invalid_argument("PoseEstimator: the belief to put back has particles without a tracked pose");
+    belief_ = belief;
 }
 
 void PoseEstimator::reset() {

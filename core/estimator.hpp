@@ -36,7 +36,9 @@ class PoseEstimator {
     // What is carried from one observation to the next. Put back, it gives the same bits for the same observations;
     // only a time budget keeps what it has learned of the machine's speed.
     const Belief& belief() const { return belief_; }
-    void restore(const Belief& belief) { belief_ = belief; }
+    // Throws std::invalid_argument for a belief that no update leaves: particles without weights or without a tracked
+    // pose.
+    void restore(const Belief& belief);
 
     const ParticleSet& particles() const { return belief_.particles; }
 

@@ -85,8 +85,8 @@ void validate(const ChoiceOptions& options) {
 
 void validate(const RelocalisationOptions& options) {
     check_option("relocalisation.frames_contradicted", options.frames_contradicted, 0, 1e6);
-    check_option("relocalisation.unverified_at_first", options.unverified_at_first, 0, 1e6);
-    check_option("relocalisation.unverified_period", options.unverified_period, 1, 1e6);
+    check_option("relocalisation.low_agreement_at_first", options.low_agreement_at_first, 0, 1e6);
+    check_option("relocalisation.low_agreement_period", options.low_agreement_period, 1, 1e6);
 }
 
 void validate(const PhaseEffort& effort, const std::string& name) {

@@ -42,7 +42,7 @@ struct PreselectionOptions {
     int tried = 24;  // of the particles' modes, and of the hypotheses from pairs; 0: no preselection
     int rays = 800;
     int rounds = 3;
-    int kept = 8;
+    int kept = 8;           // also of the hypotheses from pairs that are refined where there is no preselection
     int disambiguated = 4;  // modes near the chosen one that are compared with it on the object alone
 };
 
@@ -58,10 +58,10 @@ struct ChoiceOptions {
 
 // When the object is searched for anew although there is a pose.
 struct RelocalisationOptions {
-    int frames_contradicted = 1;  // in a row; 0: never
-    bool unverified = true;       // also while the agreement is too low to be verified:
-    int unverified_at_first = 4;  // in so many frames,
-    int unverified_period = 16;   // and later once in so many
+    int frames_contradicted = 1;     // in a row; 0: never
+    bool low_agreement = true;       // also while the agreement is too low to be verified:
+    int low_agreement_at_first = 4;  // in so many frames,
+    int low_agreement_period = 16;   // and later once in so many
 };
 
 // The most that a frame may spend in one phase.
@@ -72,14 +72,15 @@ struct PhaseEffort {
     int alternatives;   // tried
 };
 
-// What is spared once a pose is verified. In the phases searching and acquiring the method's own numbers hold: with
+// What is spared in the phases confirming and tracking. In searching and acquiring the method's own numbers hold: with
 // fewer rays for particles there, 3 more of 45 cluttered runs went wrong. In tracking the posterior is narrow, and a
 // few particles describe it (KLD sampling, Fox 2003).
 struct AdaptiveEffort {
     bool on = false;
-    int frames_to_confirm = 5;                     // without replacement, after which the track is confirmed
-    PhaseEffort confirming{128, 2000, 3, 100000};  // with 800 rays of refinement a tenth fewer frames are accepted
-    PhaseEffort tracking{128, 800, 2, 32};
+    int frames_to_confirm = 5;  // without replacement, after which the track is confirmed
+    // As many alternatives as the method says. With 800 rays of refinement a tenth fewer frames are accepted.
+    PhaseEffort confirming{.particle_rays = 128, .mode_rays = 2000, .mode_rounds = 3, .alternatives = 100000};
+    PhaseEffort tracking{.particle_rays = 128, .mode_rays = 800, .mode_rounds = 2, .alternatives = 32};
     int predicted_rounds = 1;  // of a particle, where the image agrees with the predicted pose
     // Of the joint fit while tracking, at the sensor's least noise; proportionally more where there is more of it. With
     // 1000 / 2000 / 3000 / 7000 rays everywhere the error is 0.18 / 0.15 / 0.13 / 0.11 mm, a frame 3.1 ... 6.9 ms.

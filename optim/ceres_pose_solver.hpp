@@ -1,8 +1,8 @@
 // The gradient step of the filter: least squares over SE(3) with Ceres, robust, on points or on planes.
 #pragma once
 
-#include "core/filter/association.hpp"
 #include "core/base/pose.hpp"
+#include "core/correspondences.hpp"
 #include "core/pose_solver.hpp"
 
 namespace nearpose {

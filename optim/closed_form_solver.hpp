@@ -1,8 +1,8 @@
 // The baseline of the gradient step: point-to-point least squares in closed form (Kabsch, Umeyama).
 #pragma once
 
-#include "core/filter/association.hpp"
 #include "core/base/pose.hpp"
+#include "core/correspondences.hpp"
 #include "core/pose_solver.hpp"
 
 namespace nearpose {

@@ -13,7 +13,7 @@ struct RunDescription {
     std::string input, model, views, method;
     int scene_id = 0, object_id = 0;
     int particles = 0;
-    bool adaptive = false;  // fewer while one mode holds
+    bool adaptive = false;  // fewer in tracking
     std::uint64_t seed = 0;
     Tolerance tolerance = {};  // of the verdicts
     double budget_s = 0.0;     // for a frame; 0: none

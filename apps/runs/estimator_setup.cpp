@@ -66,7 +66,7 @@ void leave_out(const std::string& part, Method& method) {
     if (part == "pairs") method.search.initialisation = Initialisation::kSurface;
     if (part == "rivals") method.hypotheses.alternatives = 0;
     if (part == "confidence") method.choice.accepted_evidence = false;
-    if (part == "doubts") method.relocalisation.unverified = false;
+    if (part == "doubts") method.relocalisation.low_agreement = false;
     if (part == "economy") method.effort.on = false;
 }
 

@@ -40,7 +40,7 @@ struct EstimatorSetup {
     std::string method = "default";
     std::string views = "raycast";
     int particles = EstimatorOptions{}.num_particles;
-    bool adaptive = true;   // the default method's: fewer particles while one mode holds
+    bool adaptive = true;   // the default method's: fewer particles in tracking
     double budget_s = 0.0;  // for an update; 0: none
     int threads = EstimatorOptions{}.num_threads;
     std::uint64_t seed = EstimatorOptions{}.seed;

@@ -27,7 +27,7 @@ struct EstimateOptions {
     ModelOptions model;
     OutputOptions outputs;
     std::string views = "raycast", method = "default", symmetries = "auto";
-    std::optional<int> particles;  // not given: up to the usual number, fewer while one mode holds
+    std::optional<int> particles;  // not given: up to the usual number, fewer in tracking
     int threads = EstimatorOptions{}.num_threads;
     std::uint64_t seed = EstimatorOptions{}.seed;
     bool no_mask = false, no_control = false;

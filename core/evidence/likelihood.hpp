@@ -25,7 +25,9 @@ enum class Cost { kOverlapMse, kPixels };
 // The costs are per ray. 1 is that of a residual at the truncation, which is the cost of an outlier.
 struct PixelCostOptions {
     double truncation_sigmas = 3.0;  // residuals beyond it are outliers
-    double extra_sigma_m = 0.0;      // added in quadrature to the sensor's noise: how far off the pose may still be
+    // Added in quadrature to the sensor's noise: how far off the pose may still be. Set by the estimator, as are
+    // free_space_depth_m, with_outline and outline_sigma_m: they follow from the part's size and the stage.
+    double extra_sigma_m = 0.0;
     // Where nothing is segmented, model before the measured surface violates free space: the sensor saw through it. It
     // costs 1 up to `free_space_depth_m` [m] before the surface, and `free_space_cost` from twice that depth on. No
     // error of the CAD and no mixed pixel explains so much. Depth 0: it costs 1 however deep it lies.

@@ -34,7 +34,7 @@ void validate(const PointPairTableOptions& options, const std::string& name) {
                  options.min_distance_diameters + 1e-3, 2.0);
     check_option(name + ".distance_cells", options.distance_cells, 1, 1000);
     check_option(name + ".angle_cells", options.angle_cells, 1,
-                 25);  // narrower than the bins that find them: see there
+                 25);  // more would be narrower than a bin of AngleCells
     check_option(name + ".max_points", options.max_points, 2, 1e5);
     validate(options.face, name + ".face");
 }

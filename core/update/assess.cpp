@@ -49,7 +49,7 @@ Assessment assess(UpdateResult& result, const Belief& belief, const std::optiona
     evidence.alternatives_tried = belief.lock.alternatives_tried;
     evidence.covariance_about_centre = about_centre(result.covariance, centre);
     result.pixels = evidence.pixels;
-    result.verdict = judge(evidence, frame.options.tolerance, frame.options.symmetries, frame.method().verification);
+    result.verdict = judge(evidence, frame.options.tolerance, frame.model.symmetries, frame.method().verification);
 
     const double nats = log_evidence_over_nothing(evidence.pixels, frame.method().pixel_cost,
                                                   frame.method().refinement.rays_per_evidence);

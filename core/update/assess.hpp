@@ -9,9 +9,9 @@
 
 namespace nearpose {
 
-// Writes into `result` what is known of the tracked pose: cost, covariance, observability, the modes' covariances,
-// pixels and verdict. Status and modes of the result are set before. `fit_covariance` is that of this observation's own
-// fit, about the model's centre, if one was made. Gives what the record of the lock takes from it.
+// Writes into `result` what is known of the tracked pose: the pose, its cost, covariance, observability, the modes'
+// covariances, pixels and verdict. Status and modes of the result are set before. `fit_covariance` is that of this
+// observation's own fit, about the model's centre, if one was made. Gives what the record of the lock takes from it.
 Assessment assess(UpdateResult& result, const Belief& belief, const std::optional<Matrix6d>& fit_covariance,
                   const Frame& frame, Ledger& ledger);
 

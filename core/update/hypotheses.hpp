@@ -9,8 +9,8 @@
 
 namespace nearpose {
 
-// The hypotheses to refine, in this order: the tracked mode (where there is one), the pose before a loss, the best
-// modes of the particles, near-symmetric poses, alternatives.
+// The hypotheses to refine. First the tracked mode, or the particle that leads it; then the pose before a loss, the
+// best modes of the particles, poses from pairs (without preselection), near-symmetric poses and alternatives.
 std::vector<Mode> propose(const Belief& belief, const MovedParticles& moved, const Situation& situation,
                           const Frame& frame, Ledger& ledger);
 

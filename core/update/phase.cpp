@@ -23,8 +23,8 @@ bool search_due(const Lock& lock, const Method& method) {
     const RelocalisationOptions& options = method.relocalisation;
     if (method.hypotheses.modes == 0 || options.frames_contradicted == 0) return false;
     if (lock.frames_contradicted > 0) return lock.frames_contradicted % options.frames_contradicted == 0;
-    return lock.low_agreement && (lock.frames_low_agreement <= options.unverified_at_first ||
-                                  lock.frames_low_agreement % options.unverified_period == 0);
+    return lock.low_agreement && (lock.frames_low_agreement <= options.low_agreement_at_first ||
+                                  lock.frames_low_agreement % options.low_agreement_period == 0);
 }
 
 bool confirmed(const Lock& lock, const Method& method) {
@@ -90,7 +90,7 @@ Lock after_assessment(Lock lock, const Assessment& assessment, const Method& met
     lock.verified = assessment.verified;
     lock.frames_contradicted = assessment.agreement < limits.contradicted_below ? lock.frames_contradicted + 1 : 0;
     if (accepted) lock.frames_low_agreement = 0;
-    lock.low_agreement = method.relocalisation.unverified && assessment.agreement < limits.min_agreement;
+    lock.low_agreement = method.relocalisation.low_agreement && assessment.agreement < limits.min_agreement;
     lock.frames_low_agreement += lock.low_agreement;
     if (accepted && method.choice.accepted_evidence)
         lock.accepted_evidence = std::max(lock.accepted_evidence, assessment.evidence);

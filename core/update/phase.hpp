@@ -1,20 +1,20 @@
-// In which phase the filter is, and what a frame in that phase is worth.
+// In which phase the filter is, and what it may spend on a frame of that phase. Every frame decides anew, by the record
+// of the frames before:
 //
-//    searching: where may it be? <---------------------------------+
-//      |                                                           |
-//      | a pose was found                                          |  the image contradicts the pose,
-//      v                                                           |  shows nothing of it, or agrees too little
-//    acquiring: which mode is right? ------------------------------+
-//      |   ^                                                       |
-//      |   | not verified any more, or an alternative is left      |
-//      v   |                                                       |
-//    confirming: a pose is verified -------------------------------+
-//      |   ^                                                       |
-//      |   | replaced, or the image disagrees with the prediction  |
-//      v   |                                                       |
-//    tracking: not replaced for some frames -----------------------+
+//    Is nothing known of the pose? Or did the frame before contradict it, or show    yes
+//    nothing of it? Or did it agree too little (at first, and then periodically)?  ------> searching
+//      | no
+//      v                                                                             yes
+//    Was it not replaced for some frames, and has no alternative a chance?         ------> tracking
+//      | no                                                                                   |
+//      |                                                         the image disagrees with the |
+//      v                                                    yes                prediction     v
+//    Is it verified, and told from its alternatives?      --------------------------> confirming
+//      | no
+//      v
+//    acquiring
 //
-// Every frame decides anew from the record of the frames before: phase_of reads the picture from the top.
+// Tracking does not ask whether the pose is verified: a model that is not quite the part never is.
 #pragma once
 
 #include <cstdint>
@@ -67,7 +67,7 @@ Phase phase_of(const Lock& lock, const Method& method, bool has_particles);
 // anew.
 Phase phase_after_prediction(Phase phase, bool image_agrees);
 
-// What a frame of a phase is worth. `predicted`: the image agrees with the predicted pose.
+// What a frame of a phase may spend. `predicted`: the image agrees with the predicted pose.
 struct Plan {
     GradientStep step;             // of a particle
     RefinementOptions refinement;  // of a mode
@@ -82,7 +82,7 @@ Lock after_prediction(Lock lock, bool motion_measured, const ChoiceOptions& opti
 Lock after_decision(Lock lock, Phase phase);
 //   choice of a mode: `alternatives_weight` only where all alternatives were tried
 Lock after_choice(Lock lock, bool replaced, const std::optional<double>& alternatives_weight);
-//   assessment; `agreement` is 0 where nothing is seen, `evidence` that of an accepted pose
+//   assessment; `agreement` is 0 where nothing is seen, `evidence` counts where the pose is accepted
 struct Assessment {
     Verdict verdict = Verdict::kLost;
     bool verified = false;

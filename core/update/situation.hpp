@@ -12,10 +12,11 @@
 
 namespace nearpose {
 
-// Where poses are compared with the image.
+// Where poses are compared with the image. Particles of a search are judged wherever each of them puts the object. A
+// ray grid for all poses lies around `around`, where that is set and nothing is segmented.
 struct Window {
     bool everywhere = false;     // the object may be anywhere: during a search
-    std::optional<Pose> around;  // else around this pose (camera_from_object), where nothing is segmented
+    std::optional<Pose> around;  // camera_from_object: the predicted pose, or the one that a search has chosen
     // How much each place of the image says about the pose, for a search. None: all places say the same.
     std::shared_ptr<const SurfelGrid> surfels;
 };

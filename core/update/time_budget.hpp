@@ -17,7 +17,7 @@ enum class Stage {
 
 struct TimeBudgetOptions {
     double usable = 0.8;      // share of the time left that a stage may plan with: stages vary
-    double remembered = 0.9;  // of a dear unit's time, from update to update: the next may be as dear
+    double remembered = 0.9;  // share of an expensive unit's time that is kept from update to update
     // Time of a unit before anything is known [s]: that of a machine ten times as slow as usual ones.
     std::array<double, 6> first_unit_s = {2e-3, 5e-4, 1e-3, 5e-4, 5e-3, 1e-2};
     // Units of each stage that an update must always be left time for.
@@ -34,7 +34,7 @@ class TimeBudget {
 
     // So many of `wanted` units fit after `elapsed_s` of this update; never less than `least`.
     int affordable(Stage stage, int wanted, int least, double elapsed_s) const;
-    // What `count` units took. A dear one is remembered for a while: the next may be as dear.
+    // What `count` units took. An expensive one is remembered for a while: the next may be as expensive.
     void took(Stage stage, int count, double seconds);
 
   private:

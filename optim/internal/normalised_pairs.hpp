@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/filter/association.hpp"
 #include "core/base/pose.hpp"
+#include "core/correspondences.hpp"
 #include "optim/ceres_pose_solver.hpp"
 
 namespace nearpose {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/search/sampling.hpp"
+#include "core/search/oriented_point.hpp"
 
 namespace nearpose {
 namespace {
@@ -147,12 +147,12 @@ double ViewsAround::distance_m() const {
 ViewsAround look_from_all_around(const ViewGenerator& views, int directions, int pixels_across) {
     ViewsAround around;
     around.views = &views;
-    // Seen from two diameters away, the sphere around the box just fits into the image.
+    constexpr double kDistanceDiameters = 2.0;  // with that focal length the sphere around the box just fits in
     const double focal = 1.9 * pixels_across, middle = 0.5 * (pixels_across - 1);
     around.camera = {pixels_across, pixels_across, focal, focal, middle, middle};
     const ModelExtent& extent = views.extent();
     for (const Eigen::Vector3d& direction : directions_all_around(directions)) {
-        around.cameras_from_object.push_back(camera_looking_along(direction, extent));
+        around.cameras_from_object.push_back(camera_looking_along(direction, extent, kDistanceDiameters));
         around.seen.push_back(look(views, around.cameras_from_object.back(), around.camera));
         for (int pixel = 0; pixel < pixels_across * pixels_across; ++pixel)
             around.hits += around.seen.back().hit(pixel) ? 1 : 0;

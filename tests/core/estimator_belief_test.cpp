@@ -94,6 +94,18 @@ TEST(Belief, KeptAndPutBackGivesTheSameBits) {
     EXPECT_EQ(first, again);
 }
 
+TEST(Belief, OneThatNoUpdateLeavesIsRefused) {
+    PoseEstimator estimator(kPart, kSolver, one_thread());
+    estimator.update(observe_at(0), {});
+    Belief broken = estimator.belief();
+    broken.tracked.reset();
+    EXPECT_THROW(estimator.restore(broken), std::invalid_argument);
+    broken = estimator.belief();
+    broken.particles.negative_log_weights.pop_back();
+    EXPECT_THROW(estimator.restore(broken), std::invalid_argument);
+    EXPECT_NO_THROW(estimator.restore(Belief{}));
+}
+
 TEST(Belief, ACopyGoesOnByItself) {
     PoseEstimator estimator(kPart, kSolver, one_thread());
     estimator.update(observe_at(0), {});
@@ -115,7 +127,9 @@ TEST(Belief, ANewOneKnowsNothingAndResetMakesOne) {
     EXPECT_EQ(belief.particles.size(), 0);
     EXPECT_FALSE(belief.tracked || belief.track || belief.pose_before_loss);
     EXPECT_EQ(belief.lock.phase, Phase::kSearching);
-    EXPECT_FALSE(belief.lock.verified || belief.lock.alternatives_tried);
+    EXPECT_FALSE(belief.lock.verified || belief.lock.low_agreement || belief.lock.alternatives_tried);
+    EXPECT_EQ(belief.lock.alternatives_weight, 0.0);
+    EXPECT_EQ(belief.lock.frames_unreplaced + belief.lock.frames_contradicted + belief.lock.frames_low_agreement, 0);
     EXPECT_EQ(belief.lock.accepted_evidence, 0.0);
     EXPECT_EQ(belief.step, 7U) << "random draws are not repeated";
 }

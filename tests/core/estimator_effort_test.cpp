@@ -79,8 +79,10 @@ TEST(Estimator, AFixedNumberOfParticlesStays) {
     EstimatorOptions options = small_options(method_default(), 0);
     options.method.effort.min_particles = options.num_particles;
     PoseEstimator estimator(kPart, kSolver, options);
-    for (int frame = 0; frame < 8; ++frame)
-        EXPECT_EQ(estimator.update(observe_at(frame), {}).effort.particles, options.num_particles) << frame;
+    for (int frame = 0; frame < 8; ++frame) {
+        const std::optional<Pose> motion = frame > 0 ? std::optional(motion_to(frame)) : std::nullopt;
+        EXPECT_EQ(estimator.update(observe_at(frame), motion).effort.particles, options.num_particles) << frame;
+    }
 }
 
 TEST(Estimator, ABudgetThatIsAmpleChangesNothingAndATightOneDoesLess) {

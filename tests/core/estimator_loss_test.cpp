@@ -98,7 +98,7 @@ TEST(Estimator, AnUnverifiedPoseIsSearchedForAnewAtFirstAndNowAndThen) {
     const Observation observation = make_observation(image, kCamera, mask);
     for (const bool searches_anew : {true, false}) {
         EstimatorOptions options = small_options(method_default(), 0);
-        options.method.relocalisation.unverified = searches_anew;
+        options.method.relocalisation.low_agreement = searches_anew;
         PoseEstimator estimator(kPart, kSolver, options);
         std::vector<int> searched;
         for (int frame = 0; frame < 34; ++frame) {

@@ -39,7 +39,7 @@ TEST(EstimatorSetup, LeavesOneNamedPartOut) {
     EXPECT_EQ(without("pairs").search.initialisation, Initialisation::kSurface);
     EXPECT_EQ(without("rivals").hypotheses.alternatives, 0);
     EXPECT_FALSE(without("confidence").choice.accepted_evidence);
-    EXPECT_FALSE(without("doubts").relocalisation.unverified);
+    EXPECT_FALSE(without("doubts").relocalisation.low_agreement);
     EXPECT_THROW(without("wheels"), std::invalid_argument);
     EstimatorSetup paper;
     paper.method = "paper";

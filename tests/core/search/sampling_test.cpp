@@ -67,7 +67,9 @@ TEST(Sampling, OrientedPointsLieOnTheSurfaceWithOutwardNormalsOnAllSides) {
 TEST(Sampling, OnSurfaceAlignsAPointWithAMeasuredOneNormalOnNormal) {
     const Observation observation = observe_part();
     const std::vector<OrientedPoint> one = {{{0.1F, 0.02F, 0.01F}, {1, 0, 0}}};
-    for (const Pose& pose : sample_on_surface(observation, one, 50, 1, 1, 0).poses) {
+    const ParticleSet particles = sample_on_surface(observation, one, 50, 1, 1, 0);
+    ASSERT_EQ(particles.size(), 50);
+    for (const Pose& pose : particles.poses) {
         const Eigen::Vector3f point = (pose * one[0].point.cast<double>()).cast<float>();
         const Eigen::Vector3f normal = (pose.rotation * one[0].normal.cast<double>()).cast<float>();
         float best = 1.0F;

@@ -87,7 +87,7 @@ TEST(Phase, WhatIsSwitchedOffIsNeverEntered) {
     method.effort.on = false;
     EXPECT_EQ(phase_of(established(), method, true), Phase::kAcquiring);
     method = method_default();
-    method.relocalisation.unverified = false;
+    method.relocalisation.low_agreement = false;
     Lock lock = after_assessment(established(), {Verdict::kContinue, false, 0.9, 0.0}, method);
     EXPECT_FALSE(search_due(lock, method));
     method.relocalisation.frames_contradicted = 0;
