@@ -11,4 +11,6 @@ cmake --preset "$preset" -DNEARPOSE_TESTS=ON >/dev/null  # the demo turns them o
 cmake --build --preset "$preset" --target "$target"
 # Several tests run at once, each with threads of its own: a thread that waits must not keep a processor busy.
 export OMP_WAIT_POLICY=passive
+# Leaks of libraries below ours are left out without a word: tests count what a program says on its error stream.
+export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0
 ctest --test-dir "build/$preset" --output-on-failure --no-tests=error -j "$(nproc)" "$@"

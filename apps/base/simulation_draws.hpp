@@ -21,5 +21,6 @@ inline constexpr auto kDropDraw = static_cast<RandomPurpose>(132);        // whi
 inline constexpr auto kNonsenseDraw = static_cast<RandomPurpose>(133);    // which frames are nonsense, and what
 inline constexpr auto kMoveDraw = static_cast<RandomPurpose>(134);        // where the part is put down elsewhere
 inline constexpr auto kStandInDraw = static_cast<RandomPurpose>(135);     // how another part lies in its place
+inline constexpr auto kBareSceneDraw = static_cast<RandomPurpose>(136);   // where a corner stands
 
 }  // namespace nearpose::simulate

@@ -51,10 +51,7 @@ simulate::Disturbances disturbances_of(const Settings& settings) {
     disturbances.nonsense_frames = whole(settings, "nonsense_frames").value_or(0);
     disturbances.look_away = whole(settings, "look_away").value_or(0);
     disturbances.object_moves = setting<bool>(settings, "object_moves").value_or(false);
-    const std::string scene = setting<std::string>(settings, "scene").value_or("part");
-    disturbances.scene = scene == "part"    ? simulate::SceneContent::kPart
-                         : scene == "empty" ? simulate::SceneContent::kEmpty
-                                            : simulate::SceneContent::kOther;
+    disturbances.scene = simulate::scene_content_of(setting<std::string>(settings, "scene").value_or("part"));
     return disturbances;
 }
 

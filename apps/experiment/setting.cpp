@@ -6,6 +6,7 @@
 #include "apps/base/number_text.hpp"
 #include "apps/experiment/cad_error.hpp"
 #include "apps/runs/estimator_setup.hpp"
+#include "apps/scenes/disturbance.hpp"
 #include "apps/scenes/parts.hpp"
 #include "apps/scenes/scenario.hpp"
 #include "apps/view_quality/view_cell.hpp"
@@ -56,8 +57,7 @@ void add_recording_rules(std::vector<SettingRule>& rules) {
     const auto add_later = [&](const char* name, SettingType type, double high, Words words, Value unsaid) {
         rules.push_back({kKind, kUse, name, type, 0.0, high, std::move(words), {}, std::move(unsaid)});
     };
-    // What is to be seen: the part, the table alone, another part in its place.
-    add_later("scene", SettingType::kWord, 0.0, {"part", "empty", "other"}, "part");
+    add_later("scene", SettingType::kWord, 0.0, simulate::scene_content_names(), "part");
     add_later("nonsense_frames", SettingType::kWhole, 1e5, {}, 0.0);
     add_later("look_away", SettingType::kWhole, 1e5, {}, 0.0);  // frames
     add_later("object_moves", SettingType::kFlag, 0.0, {}, false);

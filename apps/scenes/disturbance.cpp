@@ -62,6 +62,20 @@ Pose drawn_elsewhere(const Part& part, const Pose& scene_from_ground, std::uint6
 
 }  // namespace
 
+const std::vector<std::string>& scene_content_names() {
+    static const std::vector<std::string> names = {"part", "empty", "other", "wall", "corner", "constant"};
+    return names;
+}
+
+SceneContent scene_content_of(const std::string& name) {
+    const auto& names = scene_content_names();
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found != names.end()) return static_cast<SceneContent>(found - names.begin());
+    std::string known;
+    for (const std::string& other : names) known += (known.empty() ? "" : ", ") + other;
+    throw std::invalid_argument("'" + name + "' is no content of a scene; there are " + known);
+}
+
 void validate(const Disturbances& disturbances, Scenario scenario, int num_frames, int num_delivered) {
     refuse_moving_parts(disturbances.look_away > 0, "look_away", scenario);
     refuse_moving_parts(disturbances.object_moves, "object_moves", scenario);

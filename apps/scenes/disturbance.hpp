@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "apps/depth_sensor/sensor_noise.hpp"
@@ -15,9 +16,16 @@ namespace nearpose::simulate {
 
 enum class SceneContent {
     kPart,
-    kEmpty,  // the table without the part
-    kOther,  // another part in its place
+    kEmpty,     // the table without the part
+    kOther,     // another part in its place
+    kWall,      // a plane at the height of the part
+    kCorner,    // that plane and another across it
+    kConstant,  // the same depth in every pixel
 };
+
+// By the names of scene_content_names(), which are in the enum's order. Throws std::invalid_argument that lists them.
+SceneContent scene_content_of(const std::string& name);
+const std::vector<std::string>& scene_content_names();
 
 // All but nonsense need a part that stands still by itself and alone: baseline, piston, crankcase, sweep, handheld.
 struct Disturbances {

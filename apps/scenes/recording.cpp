@@ -6,6 +6,7 @@
 
 #include "apps/base/simulation_draws.hpp"
 #include "apps/data_set/png_file.hpp"
+#include "apps/scenes/bare_scene.hpp"
 #include "apps/scenes/parts.hpp"
 #include "apps/scenes/scene.hpp"
 #include "apps/scenes/surface_points.hpp"
@@ -117,8 +118,10 @@ struct Recording::Impl {
     // What is before the camera.
     struct Stage {
         Stage(const Mesh& mesh, const Part& part, const RecordingOptions& options, const TaskPath& path)
-            : world(world_of(options.scenario, mesh, part, path, options.camera, options.seed,
-                             {options.with_table, options.path.occlusion, options.part_name})),
+            : world(is_bare(options.disturbances.scene)
+                        ? bare_world(options.disturbances.scene, part, path, options.seed)
+                        : world_of(options.scenario, mesh, part, path, options.camera, options.seed,
+                                   {options.with_table, options.path.occlusion, options.part_name})),
               other(stand_in_of(options, part, path)),
               scene(other ? other->mesh : mesh, world) {}
 
@@ -152,8 +155,14 @@ struct Recording::Impl {
         const auto look = [&](const Pose& pose, bool with_part) {
             return stage.scene.render(pose, camera_from_scene, options.camera, with_part);
         };
-        if (options.disturbances.scene == SceneContent::kEmpty)
-            return {look(camera_from_object, false), blob_over(look(camera_from_object, true).instances[0].visible)};
+        const SceneContent content = options.disturbances.scene;
+        if (content == SceneContent::kEmpty || is_bare(content)) {
+            const InstanceView part = look(camera_from_object, true).instances[0];
+            Sight bare{look(camera_from_object, false), blob_over(is_bare(content) ? part.silhouette : part.visible)};
+            if (content == SceneContent::kConstant)
+                bare.rendered.image = with_one_depth(std::move(bare.rendered.image));
+            return bare;
+        }
         const bool there = !looks_away(options.disturbances, frame, frames_of(options));
         Sight sight{look(stage.other ? camera_from_scene * stage.other->scene_from_object : camera_from_object, there),
                     {}};
