@@ -31,6 +31,7 @@ UpdateResult nothing_seen(const Observation& observation) {
     UpdateResult result;
     result.points_observed = observation.num_candidates();
     result.verdict = Verdict::kLost;
+    result.missing = {{Requirement::kSeen, 0.0, 1.0, {}}};
     return result;
 }
 

@@ -83,6 +83,12 @@ void validate(const ChoiceOptions& options) {
     check_option("choice.accepted_evidence_kept", options.accepted_evidence_kept, 0.0, 1.0);
 }
 
+void validate(const PresenceOptions& options) {
+    check_option("presence.kept", options.kept, 0.0, 1.0);
+    check_option("presence.kept_unmeasured", options.kept_unmeasured, 0.0, 1.0);
+    check_option("presence.max_log_odds", options.max_log_odds, 0.0, 1e6);
+}
+
 void validate(const RelocalisationOptions& options) {
     check_option("relocalisation.frames_contradicted", options.frames_contradicted, 0, 1e6);
     check_option("relocalisation.low_agreement_at_first", options.low_agreement_at_first, 0, 1e6);
@@ -123,6 +129,8 @@ void validate(const Method& method) {
     validate(method.choice);
     validate(method.fit);
     validate(method.track);
+    validate(method.background);
+    validate(method.presence);
     validate(method.verification);
     validate(method.relocalisation);
     validate(method.effort);

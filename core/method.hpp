@@ -3,6 +3,7 @@
 // fractions of the model's diameter (of its box) where they scale with the part; nothing is tuned to one object.
 #pragma once
 
+#include "core/evidence/background.hpp"
 #include "core/evidence/likelihood.hpp"
 #include "core/evidence/verdict.hpp"
 #include "core/filter/gradient_step.hpp"
@@ -54,6 +55,15 @@ struct ChoiceOptions {
     // from frame to frame this share of it is kept. Without it 5 instead of 19 of 20 approaches to the bracket held.
     bool accepted_evidence = true;
     double accepted_evidence_kept = 0.7;
+};
+
+// How long the object is believed to be there. The log-odds are those of a Bayes filter that forgets: what the frames
+// before showed counts on, and each frame's evidence is added. So a part that was seen is believed in while only a flat
+// face of it is in view; the bound keeps a part that was taken away from being believed in.
+struct PresenceOptions {
+    double kept = 0.95;            // from frame to frame, where the camera's motion is measured
+    double kept_unmeasured = 0.5;  // where it is not
+    double max_log_odds = 20.0;    // either way [nats]
 };
 
 // When the object is searched for anew although there is a pose.
@@ -111,6 +121,8 @@ struct Method {
     bool fusion = true;  // the chosen mode is fitted jointly with the sensor's errors and fused with the track
     FitOptions fit;
     TrackOptions track;
+    BackgroundOptions background;
+    PresenceOptions presence;
     VerificationOptions verification;
     RelocalisationOptions relocalisation;
     AdaptiveEffort effort;

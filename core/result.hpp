@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/evidence/background.hpp"
 #include "core/evidence/likelihood.hpp"
 #include "core/evidence/observability.hpp"
 #include "core/evidence/verdict.hpp"
@@ -40,9 +41,12 @@ struct UpdateResult {
     double cost = 0.0;                       // of the MAP: PixelCost::cost, or epsilon [m^2]
     double score = 0.0;                      // larger is better: 1 - pixel cost, or 1 / (1 + epsilon / sigma^2)
     Verdict verdict = Verdict::kContinue;    // may the pose be acted on?
+    std::vector<Shortfall> missing;          // why not; empty where it may
     std::vector<Mode> modes;                 // refined, best first; the default method's
     Observability observability;             // of this frame alone; the tracked pose may be known better
     PixelCost pixels;                        // how the estimate's rays compare with the depth image
+    PositiveEvidence positive_evidence;      // what the image shows of the model beyond planes
+    double log_odds_present = 0.0;           // that the object is there, with the frames before [nats]
     Effort effort;
     double effective_sample_size = 0.0;  // 1..number of particles, after weighting
     bool resampled = false;              // before this update's propagation

@@ -73,6 +73,22 @@ Json modes_of(const std::vector<Mode>& modes) {
 }
 
 // Of one observation, largest standard deviation first; a turn counts with the way of a point at half the diameter.
+// What keeps the estimate from being accepted, in the requirement's unit and in words.
+Json missing_of(const std::vector<Shortfall>& missing) {
+    Json list = Json::array();
+    for (const Shortfall& shortfall : missing)
+        list.push_back({{"requirement", to_string(shortfall.requirement)},
+                        {"value", shortfall.value},
+                        {"limit", shortfall.limit},
+                        {"text", describe(shortfall)}});
+    return list;
+}
+
+Json evidence_of(const PositiveEvidence& evidence) {
+    return {{"relief", evidence.relief},         {"steps", evidence.steps},       {"occlusion", evidence.occlusion},
+            {"free_space", evidence.free_space}, {"coplanar", evidence.coplanar}, {"total", evidence.total()}};
+}
+
 Json observability_of(const Observability& observability) {
     Json sigmas = Json::array();
     for (const double sigma_m : observability.sigmas_m) sigmas.push_back(sigma_m);
@@ -160,7 +176,8 @@ std::string frame_log_line(const FrameReport& frame, const UpdateResult& result)
     Json line = {{"frame", frame.frame_id},
                  {"stamp_s", frame.stamp_s},
                  {"status", to_string(result.status)},
-                 {"verdict", to_string(result.verdict)}};
+                 {"verdict", to_string(result.verdict)},
+                 {"missing", missing_of(result.missing)}};
     if (!frame.error.empty()) line["error"] = frame.error;
     if (result.status != UpdateStatus::kNoPose) {
         line["translation_m"] = translation_m(result.camera_from_object);
@@ -169,6 +186,8 @@ std::string frame_log_line(const FrameReport& frame, const UpdateResult& result)
         line["covariance_ros"] = row_major(ros_covariance(result.covariance, result.camera_from_object));
         line["score"] = result.score;
         line["agreement"] = result.pixels.agreement();
+        line["log_odds_present"] = result.log_odds_present;
+        line["positive_evidence"] = evidence_of(result.positive_evidence);
         line["observability"] = observability_of(result.observability);
         line["cost"] = result.cost;
     }

@@ -28,8 +28,9 @@ const std::vector<std::string>& residual_names() {
 }
 
 const std::vector<std::string>& parts_of_method() {
-    static const std::vector<std::string> names = {"nothing",   "fine_fit", "outline",    "depths", "pairs",
-                                                   "shortlist", "rivals",   "confidence", "doubts", "economy"};
+    static const std::vector<std::string> names = {"nothing", "fine_fit",  "outline", "depths",
+                                                   "pairs",   "shortlist", "rivals",  "confidence",
+                                                   "doubts",  "economy",   "presence"};
     return names;
 }
 
@@ -56,7 +57,7 @@ void leave_out(const std::string& part, Method& method) {
     if (std::find(parts.begin(), parts.end(), part) == parts.end())
         throw std::invalid_argument("without '" + part +
                                     "': take nothing, fine_fit, outline, depths, pairs, shortlist, rivals, confidence, "
-                                    "doubts or economy");
+                                    "doubts, economy or presence");
     if (part != "nothing" && method.hypotheses.modes == 0)
         throw std::invalid_argument("without " + part + ": only the default method has it");
     if (part == "fine_fit") method.fusion = false;
@@ -65,6 +66,7 @@ void leave_out(const std::string& part, Method& method) {
     if (part == "shortlist") method.preselection.tried = 0;
     if (part == "pairs") method.search.initialisation = Initialisation::kSurface;
     if (part == "rivals") method.hypotheses.alternatives = 0;
+    if (part == "presence") method.verification.min_log_odds_present = method.verification.lost_below_log_odds = -1e9;
     if (part == "confidence") method.choice.accepted_evidence = false;
     if (part == "doubts") method.relocalisation.low_agreement = false;
     if (part == "economy") method.effort.on = false;

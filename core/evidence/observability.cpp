@@ -2,15 +2,12 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <string>
 
-namespace nearpose {
-namespace {
+#include "core/base/text.hpp"
 
-// "x" where that axis of the object is within 15 degrees of the direction; otherwise the direction's components.
+namespace nearpose {
 std::string axis_name(Eigen::Vector3d direction) {
     constexpr double kCosine = 0.966;  // of 15 degrees
     direction.normalize();
@@ -19,15 +16,11 @@ std::string axis_name(Eigen::Vector3d direction) {
     if (std::abs(direction[largest]) > kCosine) return std::string(1, "xyz"[largest]);
     if (direction[largest] < 0.0) direction = -direction;
     std::string text = "(";
-    for (int i = 0; i < 3; ++i) {  // std::to_chars knows no locale's comma
-        std::array<char, 32> digits{};
-        const auto end =
-            std::to_chars(digits.data(), digits.data() + digits.size(), direction[i], std::chars_format::fixed, 2);
-        text.append(digits.data(), end.ptr);
-        text += i < 2 ? " " : ")";
-    }
+    for (int i = 0; i < 3; ++i) text += fixed_text(direction[i], 2) + (i < 2 ? " " : ")");
     return text;
 }
+
+namespace {
 
 // A motion is named by its larger part. Where neither is twice the other, it is a rotation about an axis outside the
 // centre, and both are named.
@@ -40,10 +33,17 @@ std::string name_of(const Twist& direction) {
 
 }  // namespace
 
-Observability observability_of(const Matrix6d& covariance, double radius_m, double weak_beyond_m) {
+Observability observability_of(const Matrix6d& covariance, double radius_m, double weak_beyond_m,
+                               const Symmetries& symmetries, const Eigen::Vector3d& centre_in_object) {
     Twist scale;
     scale << Eigen::Vector3d::Constant(radius_m), Eigen::Vector3d::Ones();
-    const Matrix6d scaled = scale.asDiagonal() * covariance * scale.asDiagonal();
+    Matrix6d scaled = scale.asDiagonal() * covariance * scale.asDiagonal();
+    for (const AxisOfRevolution& axis : symmetries.continuous) {
+        Twist turn;  // about the axis, as it moves the centre
+        turn << radius_m * axis.axis_in_object, axis.axis_in_object.cross(centre_in_object - axis.offset_in_object_m);
+        const Matrix6d across = Matrix6d::Identity() - turn * turn.transpose() / turn.squaredNorm();
+        scaled = across * scaled * across.transpose();
+    }
     const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(0.5 * (scaled + scaled.transpose()));
     Observability result;
     for (int k = 0; k < 6; ++k) {  // the solver's are in ascending order

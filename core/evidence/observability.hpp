@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/pose.hpp"
+#include "core/shape/symmetry.hpp"
 
 namespace nearpose {
 
@@ -18,7 +19,13 @@ struct Observability {
     std::vector<std::string> weak;
 };
 
-// `covariance` is that of the observation's own fit, of the twist about the model's centre (joint_fit.hpp).
-Observability observability_of(const Matrix6d& covariance, double radius_m, double weak_beyond_m);
+// `covariance` is that of the observation's own fit, of the twist about the model's centre (joint_fit.hpp). Turns about
+// axes of revolution, which change nothing, are left out: their sigma is 0.
+Observability observability_of(const Matrix6d& covariance, double radius_m, double weak_beyond_m,
+                               const Symmetries& symmetries = {},
+                               const Eigen::Vector3d& centre_in_object = Eigen::Vector3d::Zero());
+
+// "x" where that axis of the object is within 15 degrees of the direction; otherwise the direction's components.
+std::string axis_name(Eigen::Vector3d direction_in_object);
 
 }  // namespace nearpose

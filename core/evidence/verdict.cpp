@@ -5,6 +5,8 @@
 
 #include "core/base/check.hpp"
 #include "core/base/statistics.hpp"
+#include "core/base/text.hpp"
+#include "core/evidence/observability.hpp"
 
 namespace nearpose {
 
@@ -20,28 +22,123 @@ const char* to_string(Verdict verdict) {
     return "";
 }
 
-namespace {
-
-double largest_sigma(const Eigen::Matrix3d& covariance) {
-    return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues().maxCoeff());
+const char* to_string(Requirement requirement) {
+    switch (requirement) {
+        case Requirement::kSeen:
+            return "seen";
+        case Requirement::kPresence:
+            return "presence";
+        case Requirement::kAgreement:
+            return "agreement";
+        case Requirement::kSupport:
+            return "support";
+        case Requirement::kOutline:
+            return "outline";
+        case Requirement::kOverlap:
+            return "overlap";
+        case Requirement::kAlternativesTried:
+            return "alternatives_tried";
+        case Requirement::kAlternatives:
+            return "alternatives";
+        case Requirement::kTranslation:
+            return "translation";
+        case Requirement::kRotation:
+            return "rotation";
+    }
+    return "";
 }
 
-// Whether the 90 % regions of rotation and translation lie within the tolerance, without turns about axes of
-// revolution.
-bool within_tolerance(const Matrix6d& covariance, const Tolerance& tolerance, const Symmetries& symmetries) {
+std::string describe(const Shortfall& shortfall) {
+    constexpr double kMillimetres = 1e3, kDegrees = 57.295779513082321;
+    const auto figures = [&](double unit, int decimals, const char* name) {
+        return fixed_text(unit * shortfall.value, decimals) + name;
+    };
+    const auto wanted = [&](double unit, int decimals, const char* name) {
+        return ", wanted " + fixed_text(unit * shortfall.limit, decimals) + name;
+    };
+    switch (shortfall.requirement) {
+        case Requirement::kSeen:
+            return "nothing of the object was found";
+        case Requirement::kPresence:
+            return "the image hardly shows more than planes: " + figures(1.0, 1, " nats") + wanted(1.0, 1, "");
+        case Requirement::kAgreement:
+            return "too little agrees: " + figures(1.0, 2, "") + wanted(1.0, 2, "");
+        case Requirement::kSupport:
+            return "too little of the model is seen: " + figures(1.0, 2, "") + wanted(1.0, 2, "");
+        case Requirement::kOutline:
+            return "surfaces go on where the model ends: " + figures(1.0, 2, " of its outline") +
+                   wanted(1.0, 2, " at most");
+        case Requirement::kOverlap:
+            return "mask and model do not cover each other: " + figures(1.0, 2, "") + wanted(1.0, 2, "");
+        case Requirement::kAlternativesTried:
+            return "not yet compared with poses that look alike";
+        case Requirement::kAlternatives:
+            return "another pose explains the image as well: " +
+                   (shortfall.which.empty() ? "" : shortfall.which + ", ") + figures(1.0, 2, " of the probability") +
+                   wanted(1.0, 2, " at most");
+        case Requirement::kTranslation:
+            return "precision: " + figures(kMillimetres, 1, " mm along ") + shortfall.which +
+                   wanted(kMillimetres, 1, " mm");
+        case Requirement::kRotation:
+            return "precision: " + figures(kDegrees, 2, " degrees about ") + shortfall.which +
+                   wanted(kDegrees, 2, " degrees");
+    }
+    return "";
+}
+
+namespace {
+
+// The direction that is known worst, and the radius of the 90 % region along it.
+struct Spread {
+    double radius = 0.0;
+    std::string axis;
+};
+
+Spread largest_spread(const Eigen::Matrix3d& covariance) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);  // ascending
+    return {kNormalRadius3_90 * std::sqrt(std::max(0.0, solver.eigenvalues()[2])),
+            axis_name(solver.eigenvectors().col(2))};
+}
+
+// Without turns about axes of revolution.
+Eigen::Matrix3d rotation_that_shows(const Matrix6d& covariance, const Symmetries& symmetries) {
     Eigen::Matrix3d rotation = covariance.topLeftCorner<3, 3>();
     for (const AxisOfRevolution& axis : symmetries.continuous) {
         const Eigen::Matrix3d across =
             Eigen::Matrix3d::Identity() - axis.axis_in_object * axis.axis_in_object.transpose();
         rotation = across * rotation * across.transpose();
     }
-    return kNormalRadius3_90 * largest_sigma(rotation) <= tolerance.rotation_rad &&
-           kNormalRadius3_90 * largest_sigma(covariance.bottomRightCorner<3, 3>()) <= tolerance.translation_m;
+    return rotation;
+}
+
+// All that keeps a pose from being verified.
+std::vector<Shortfall> missing_to_verify(const Evidence& evidence, const VerificationOptions& options) {
+    std::vector<Shortfall> missing;
+    const auto at_least = [&](Requirement requirement, double value, double limit) {
+        if (!(value >= limit)) missing.push_back({requirement, value, limit, {}});
+    };
+    const auto at_most = [&](Requirement requirement, double value, double limit, const std::string& which) {
+        if (!(value <= limit)) missing.push_back({requirement, value, limit, which});
+    };
+    const PixelCost& pixels = evidence.pixels;
+    at_least(Requirement::kSeen, evidence.seen, 1.0);
+    if (!evidence.seen) return missing;
+    at_least(Requirement::kPresence, evidence.log_odds_present, options.min_log_odds_present);
+    at_least(Requirement::kAgreement, pixels.agreement(), options.min_agreement);
+    at_least(Requirement::kSupport, pixels.support(), options.min_support);
+    at_most(Requirement::kOutline, pixels.coplanar_share(), options.max_coplanar_share, {});
+    at_least(Requirement::kOverlap, pixels.overlap(), options.min_overlap);
+    at_least(Requirement::kAlternativesTried, evidence.alternatives_tried, 1.0);
+    at_most(Requirement::kAlternatives, evidence.alternatives_weight, options.max_alternatives_weight,
+            evidence.alternative);
+    return missing;
 }
 
 }  // namespace
 
 void validate(const VerificationOptions& options) {
+    check_option("verification.min_log_odds_present", options.min_log_odds_present, -1e9, 1e9);
+    check_option("verification.lost_below_log_odds", options.lost_below_log_odds, -1e9, 1e9);
     check_option("verification.min_agreement", options.min_agreement, 0.0, 1.0);
     check_option("verification.min_support", options.min_support, 0.0, 1.0);
     check_option("verification.min_overlap", options.min_overlap, 0.0, 1.0);
@@ -51,19 +148,23 @@ void validate(const VerificationOptions& options) {
     check_option("verification.lost_below", options.lost_below, 0.0, 1.0);
 }
 
-bool is_verified(const Evidence& evidence, const VerificationOptions& options) {
-    const PixelCost& pixels = evidence.pixels;
-    const bool fits = pixels.agreement() >= options.min_agreement && pixels.support() >= options.min_support &&
-                      pixels.coplanar_share() <= options.max_coplanar_share && pixels.overlap() >= options.min_overlap;
-    return evidence.seen && fits && evidence.alternatives_tried &&
-           evidence.alternatives_weight <= options.max_alternatives_weight;
-}
-
-Verdict judge(const Evidence& evidence, const Tolerance& tolerance, const Symmetries& symmetries,
-              const VerificationOptions& options) {
-    if (!evidence.seen || evidence.pixels.agreement() < options.lost_below) return Verdict::kLost;
-    const bool sharp = within_tolerance(evidence.covariance_about_centre, tolerance, symmetries);
-    return is_verified(evidence, options) && sharp ? Verdict::kAccept : Verdict::kContinue;
+Judgement judge(const Evidence& evidence, const Tolerance& tolerance, const Symmetries& symmetries,
+                const VerificationOptions& options) {
+    Judgement judgement;
+    judgement.missing = missing_to_verify(evidence, options);
+    judgement.verified = judgement.missing.empty();
+    if (!evidence.seen || evidence.pixels.agreement() < options.lost_below ||
+        evidence.log_odds_present < options.lost_below_log_odds)
+        return judgement;
+    const Matrix6d& covariance = evidence.covariance_about_centre;
+    const Spread slide = largest_spread(covariance.bottomRightCorner<3, 3>());
+    const Spread turn = largest_spread(rotation_that_shows(covariance, symmetries));
+    if (!(slide.radius <= tolerance.translation_m))
+        judgement.missing.push_back({Requirement::kTranslation, slide.radius, tolerance.translation_m, slide.axis});
+    if (!(turn.radius <= tolerance.rotation_rad))
+        judgement.missing.push_back({Requirement::kRotation, turn.radius, tolerance.rotation_rad, turn.axis});
+    judgement.verdict = judgement.missing.empty() ? Verdict::kAccept : Verdict::kContinue;
+    return judgement;
 }
 
 }  // namespace nearpose

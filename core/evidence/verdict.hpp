@@ -1,5 +1,8 @@
-// May a robot act on this estimate?
+// May a robot act on this estimate, and if not, what is missing?
 #pragma once
+
+#include <string>
+#include <vector>
 
 #include "core/base/pose.hpp"
 #include "core/evidence/likelihood.hpp"
@@ -25,9 +28,11 @@ struct Tolerance {
 // What the present frame says about an estimate.
 struct Evidence {
     bool seen = false;                                    // the object was found in this frame
+    double log_odds_present = 0.0;                        // that the object is there, with the frames before [nats]
     PixelCost pixels;                                     // at the estimate
     double alternatives_weight = 0.0;                     // share of the probability that other modes have, in 0..1
     bool alternatives_tried = false;                      // since the estimate's mode was last replaced
+    std::string alternative;                              // the likeliest of them, in words; empty: not known
     Matrix6d covariance_about_centre = Matrix6d::Zero();  // of the twist in object axes, rotation first
 };
 
@@ -35,6 +40,7 @@ struct Evidence {
 // share are those of PixelCost.
 struct VerificationOptions {
     // To be verified, a pose must pass all of these.
+    double min_log_odds_present = 5.0;  // of the object against planes alone, see background.hpp [nats]
     double min_agreement = 0.93;
     double min_support = 0.3;  // the part must be seen at all
     double min_overlap = 0.55;
@@ -42,23 +48,53 @@ struct VerificationOptions {
     double max_alternatives_weight = 0.01;  // of the probability
     // Agreement below which the image contradicts the pose, so that the object is searched for anew.
     double contradicted_below = 0.8;
-    // Agreement below which the pose is lost.
-    double lost_below = 0.6;
+    // Below one of these the pose is lost.
+    double lost_below = 0.6;                 // agreement
+    double lost_below_log_odds = -2.197225;  // of a probability of 0.1 that the object is there [nats]
 };
 
 // Throws std::invalid_argument naming field, value and bound.
 void validate(const VerificationOptions& options);
 
-// Hypothesis verification: the depth agrees with the pose, the part ends where the model does, and no alternative
-// explains the image nearly as well. It says nothing about how precisely the pose is known.
-bool is_verified(const Evidence& evidence, const VerificationOptions& options = {});
+// What a pose must have to be accepted.
+enum class Requirement {
+    kSeen,               // the object was found in this frame
+    kPresence,           // the image shows relief and steps of the model, which planes do not explain [nats]
+    kAgreement,          // little contradicts the pose: PixelCost::agreement
+    kSupport,            // enough of the model is seen: PixelCost::support
+    kOutline,            // the part ends where the model does: PixelCost::coplanar_share
+    kOverlap,            // mask and model cover each other: PixelCost::overlap
+    kAlternativesTried,  // the pose was compared with those that look alike
+    kAlternatives,       // none of them explains the image nearly as well: their share of the probability
+    kTranslation,        // 90 % of the probability lies within the tolerance [m]
+    kRotation,           // the same [rad]
+};
+
+const char* to_string(Requirement requirement);
+
+// A requirement that is not met.
+struct Shortfall {
+    Requirement requirement = Requirement::kSeen;
+    double value = 0.0;  // in the requirement's unit
+    double limit = 0.0;
+    std::string which;  // the axis that is known worst, or the alternative
+};
+
+// In words, with figure and limit: "precision: 2.6 mm along x, wanted 2.0 mm".
+std::string describe(const Shortfall& shortfall);
+
+struct Judgement {
+    Verdict verdict = Verdict::kLost;
+    bool verified = false;           // nothing but precision is missing
+    std::vector<Shortfall> missing;  // empty: accepted
+};
 
 // From the present frame's evidence alone:
-//   lost      nothing is seen of the object, or the image contradicts the pose (agreement below `lost_below`)
-//   accept    the pose is verified, and its 90 % region lies within the tolerance
+//   lost      nothing is seen of the object, it is probably not there, or the image contradicts the pose
+//   accept    every requirement is met
 //   continue  otherwise
 // Rotation about an axis of revolution, which no image can show, does not count.
-Verdict judge(const Evidence& evidence, const Tolerance& tolerance, const Symmetries& symmetries,
-              const VerificationOptions& options = {});
+Judgement judge(const Evidence& evidence, const Tolerance& tolerance, const Symmetries& symmetries,
+                const VerificationOptions& options = {});
 
 }  // namespace nearpose

@@ -190,13 +190,17 @@ RefinedMode refine_mode(const Pose& camera_from_object, const StepContext& conte
     return refined;
 }
 
-PixelCost refined_cost(const Pose& camera_from_object, const StepContext& context, const RefinementOptions& options) {
+PixelCostOptions refined_cost_options(const StepContext& context, const RefinementOptions& options) {
     PixelCostOptions pixel_cost = context.pixel_cost;
     pixel_cost.extra_sigma_m = options.cost_sigma_diameters * context.views.extent().diameter_m();
     pixel_cost.outline_sigma_m = pixel_cost.extra_sigma_m;
     pixel_cost.with_outline = options.outline;
+    return pixel_cost;
+}
+
+PixelCost refined_cost(const Pose& camera_from_object, const StepContext& context, const RefinementOptions& options) {
     const View view = context.views.generate(camera_from_object, context.observed.camera);
-    return nearpose::pixel_cost(view, camera_from_object, context.observed, pixel_cost);
+    return nearpose::pixel_cost(view, camera_from_object, context.observed, refined_cost_options(context, options));
 }
 
 }  // namespace nearpose

@@ -111,6 +111,9 @@ MovedParticle move_particle(const Pose& camera_from_object, const StepContext& c
 // projective, and the noise added to the sensor's shrinks from round to round.
 RefinedMode refine_mode(const Pose& camera_from_object, const StepContext& context, const RefinementOptions& options);
 
+// The pixel cost's options by which refined poses are compared.
+PixelCostOptions refined_cost_options(const StepContext& context, const RefinementOptions& options);
+
 // The pixel cost by which refined poses are compared, with its counts.
 PixelCost refined_cost(const Pose& camera_from_object, const StepContext& context, const RefinementOptions& options);
 

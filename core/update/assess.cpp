@@ -1,6 +1,8 @@
 #include "core/update/assess.hpp"
 
 #include "core/base/parallel.hpp"
+#include "core/base/text.hpp"
+#include "core/evidence/background.hpp"
 #include "core/fit/joint_fit.hpp"
 #include "core/update/ray_grids.hpp"
 
@@ -19,42 +21,79 @@ void describe_modes(std::vector<Mode>& modes, const std::optional<Matrix6d>& cov
     });
 }
 
+// The likeliest alternative to a pose, in words; empty where no mode is one.
+std::string name_of_alternative(const std::vector<Mode>& modes, const Pose& pose, const ObjectModel& model) {
+    const Mode* likeliest = nullptr;
+    for (const Mode& mode : modes)
+        if (!model.same_mode(mode.camera_from_object, pose) && (!likeliest || mode.weight > likeliest->weight))
+            likeliest = &mode;
+    if (!likeliest) return {};
+    const Pose change = pose.inverse() * likeliest->camera_from_object;  // in object axes
+    const Eigen::AngleAxisd turn(change.rotation);
+    const double shift_m = (change * model.centre_in_object() - model.centre_in_object()).norm();
+    constexpr double kMillimetres = 1e3, kDegrees = 57.295779513082321;
+    return "turned by " + fixed_text(kDegrees * turn.angle(), 0) + " degrees about " + axis_name(turn.axis()) +
+           " and shifted by " + fixed_text(kMillimetres * shift_m, 1) + " mm";
+}
+
+// What the image shows of the object at the estimate, by itself.
+void write_pixels(UpdateResult& result, const StepContext& context, const RefinementOptions& refinement,
+                  const Frame& frame) {
+    const PixelCostOptions options = refined_cost_options(context, refinement);
+    const Pose& pose = result.camera_from_object;
+    const View view = context.views.generate(pose, context.observed.camera);
+    result.pixels = pixel_cost(view, pose, context.observed, options);
+    const auto planes = fit_background(view, context.observed, options, frame.method().background);
+    result.positive_evidence =
+        positive_evidence(view, pose, context.observed, planes, options, frame.method().background);
+}
+
 }  // namespace
 
 Assessment assess(UpdateResult& result, const Belief& belief, const std::optional<Matrix6d>& fit_covariance,
                   const Frame& frame, Ledger& ledger) {
     if (!belief.tracked) return {};
     constexpr double kOneMetre = 1.0;
+    const Method& method = frame.method();
     const bool estimated = result.status == UpdateStatus::kEstimated;
     const Eigen::Vector3d centre = frame.model.centre_in_object();
     const Pose& pose = belief.tracked->camera_from_object;
-    const RefinementOptions refinement = plan_of(belief.lock.phase, frame.method(), false).refinement;
+    const RefinementOptions refinement = plan_of(belief.lock.phase, method, false).refinement;
     const PixelGrid grid = ray_grid(frame, pose, refinement.max_rays);
-    const StepContext context = frame.context(ledger.measured(grid, frame.observation), frame.method().step);
+    const StepContext context = frame.context(ledger.measured(grid, frame.observation), method.step);
 
     result.camera_from_object = pose;
     result.cost = belief.tracked->cost;
     std::optional<Matrix6d> observed = fit_covariance;  // by this observation alone
-    if (!belief.track) observed = covariance_at(pose, context, frame.method().fit);
+    if (!belief.track) observed = covariance_at(pose, context, method.fit);
     result.covariance = about_origin(belief.track ? belief.track->whole_covariance() : *observed, centre);
     if (!estimated) observed.reset();
-    result.observability = observability_of(observed.value_or(kOneMetre * Matrix6d::Identity()),
-                                            0.5 * frame.model.diameter_m(), frame.options.tolerance.translation_m);
+    result.observability =
+        observability_of(observed.value_or(kOneMetre * Matrix6d::Identity()), 0.5 * frame.model.diameter_m(),
+                         frame.options.tolerance.translation_m, frame.model.symmetries, centre);
     describe_modes(result.modes, observed, context, frame);
+    write_pixels(result, context, refinement, frame);
+    const double frame_log_odds =
+        log_odds_present(result.positive_evidence, grid.stride, method.pixel_cost, frame.observation.sensor());
+    result.log_odds_present = log_odds_with(frame_log_odds, belief.lock, method.presence);
 
     Evidence evidence;
     evidence.seen = estimated;
-    evidence.pixels = refined_cost(pose, context, refinement);
+    evidence.log_odds_present = result.log_odds_present;
+    evidence.pixels = result.pixels;
     evidence.alternatives_weight = belief.lock.alternatives_weight;
     evidence.alternatives_tried = belief.lock.alternatives_tried;
+    evidence.alternative = name_of_alternative(result.modes, pose, frame.model);
     evidence.covariance_about_centre = about_centre(result.covariance, centre);
-    result.pixels = evidence.pixels;
-    result.verdict = judge(evidence, frame.options.tolerance, frame.model.symmetries, frame.method().verification);
+    const Judgement judgement = judge(evidence, frame.options.tolerance, frame.model.symmetries, method.verification);
+    result.verdict = judgement.verdict;
+    result.missing = judgement.missing;
 
-    const double nats = log_evidence_over_nothing(evidence.pixels, frame.method().pixel_cost,
-                                                  frame.method().refinement.rays_per_evidence);
-    return {result.verdict, is_verified(evidence, frame.method().verification),
-            result.verdict == Verdict::kLost ? 0.0 : evidence.pixels.agreement(), nats * grid.stride * grid.stride};
+    const double nats =
+        log_evidence_over_nothing(result.pixels, method.pixel_cost, method.refinement.rays_per_evidence);
+    return {judgement.verdict, judgement.verified,
+            judgement.verdict == Verdict::kLost ? 0.0 : result.pixels.agreement(), nats * grid.stride * grid.stride,
+            result.log_odds_present};
 }
 
 }  // namespace nearpose

@@ -64,8 +64,9 @@ Plan plan_of(Phase phase, const Method& method, bool predicted) {
     return plan;
 }
 
-Lock after_prediction(Lock lock, bool motion_measured, const ChoiceOptions& options) {
-    lock.accepted_evidence *= motion_measured ? options.accepted_evidence_kept : 0.0;
+Lock after_prediction(Lock lock, bool motion_measured, const Method& method) {
+    lock.accepted_evidence *= motion_measured ? method.choice.accepted_evidence_kept : 0.0;
+    lock.log_odds_present *= motion_measured ? method.presence.kept : method.presence.kept_unmeasured;
     return lock;
 }
 
@@ -75,7 +76,10 @@ Lock after_decision(Lock lock, Phase phase) {
 }
 
 Lock after_choice(Lock lock, bool replaced, const std::optional<double>& alternatives_weight) {
-    if (replaced) lock.alternatives_tried = false;
+    if (replaced) {
+        lock.alternatives_tried = false;
+        lock.log_odds_present = 0.0;  // the evidence was for another pose
+    }
     lock.frames_unreplaced = replaced ? 0 : lock.frames_unreplaced + 1;
     if (alternatives_weight) {
         lock.alternatives_tried = true;
@@ -84,10 +88,15 @@ Lock after_choice(Lock lock, bool replaced, const std::optional<double>& alterna
     return lock;
 }
 
+double log_odds_with(double frame_log_odds, const Lock& lock, const PresenceOptions& options) {
+    return std::clamp(lock.log_odds_present + frame_log_odds, -options.max_log_odds, options.max_log_odds);
+}
+
 Lock after_assessment(Lock lock, const Assessment& assessment, const Method& method) {
     const VerificationOptions& limits = method.verification;
     const bool accepted = assessment.verdict == Verdict::kAccept;
     lock.verified = assessment.verified;
+    lock.log_odds_present = assessment.log_odds_present;
     lock.frames_contradicted = assessment.agreement < limits.contradicted_below ? lock.frames_contradicted + 1 : 0;
     if (accepted) lock.frames_low_agreement = 0;
     lock.low_agreement = method.relocalisation.low_agreement && assessment.agreement < limits.min_agreement;

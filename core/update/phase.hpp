@@ -47,6 +47,7 @@ struct Lock {
     // Evidence of the image for the last accepted pose; it fades from frame to frame, and is 0 where the arm's motion
     // is not known. [nats * squared ray spacing in pixels], which does not depend on how many rays were cast.
     double accepted_evidence = 0.0;
+    double log_odds_present = 0.0;  // that the object is there, after the last frame [nats]
 };
 
 // Whether the object is to be searched for anew although there is a pose. So it is after a frame that contradicts the
@@ -77,17 +78,20 @@ Plan plan_of(Phase phase, const Method& method, bool predicted);
 
 // How a frame changes the record, in this order.
 //   prediction: evidence fades, since what was accepted may have been moved; all of it where no motion was measured
-Lock after_prediction(Lock lock, bool motion_measured, const ChoiceOptions& options);
+Lock after_prediction(Lock lock, bool motion_measured, const Method& method);
 //   decision on the phase
 Lock after_decision(Lock lock, Phase phase);
 //   choice of a mode: `alternatives_weight` only where all alternatives were tried
 Lock after_choice(Lock lock, bool replaced, const std::optional<double>& alternatives_weight);
+//   the log-odds that the object is there, with the evidence of this frame alone [nats]
+double log_odds_with(double frame_log_odds, const Lock& lock, const PresenceOptions& options);
 //   assessment; `agreement` is 0 where nothing is seen, `evidence` counts where the pose is accepted
 struct Assessment {
     Verdict verdict = Verdict::kLost;
     bool verified = false;
     double agreement = 0.0;
     double evidence = 0.0;
+    double log_odds_present = 0.0;  // with the frames before
 };
 Lock after_assessment(Lock lock, const Assessment& assessment, const Method& method);
 

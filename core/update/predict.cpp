@@ -36,7 +36,7 @@ Belief predict(const Belief& before, const Frame& frame, Ledger& ledger) {
         belief.particles = systematic_resample(belief.particles, wanted, options.seed, frame.step);
         ledger.resampled = true;
     }
-    belief.lock = after_prediction(belief.lock, motion.has_value(), frame.method().choice);
+    belief.lock = after_prediction(belief.lock, motion.has_value(), frame.method());
     if (motion) {
         propagate(belief.particles, *motion);
         if (belief.tracked) belief.tracked->camera_from_object = *motion * belief.tracked->camera_from_object;

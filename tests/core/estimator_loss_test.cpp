@@ -28,6 +28,38 @@ TEST(Estimator, NothingSeenYetIsNoPoseAndLaterThePredictionStandsIn) {
     EXPECT_LT(error_m(again, 2), 0.001);
 }
 
+TEST(Estimator, AWallIsNotThePartHoweverNearItComes) {
+    for (const double tilt : {0.0, 0.4}) {
+        PoseEstimator estimator(kPart, kSolver, small_options(method_default(), 0));
+        for (double distance_m = 0.45; distance_m > 0.12; distance_m -= 0.04) {
+            const Eigen::Vector3d normal = Eigen::Vector3d(std::sin(tilt), 0.0, std::cos(tilt));
+            DepthImage wall{kCamera.width, kCamera.height, {}};
+            for (int pixel = 0; pixel < 160 * 120; ++pixel)
+                wall.depth_m.push_back(
+                    static_cast<float>(distance_m / normal.dot(kCamera.ray(pixel % 160, pixel / 160))));
+            const UpdateResult result = estimator.update(make_observation(wall, kCamera, std::nullopt), {});
+            EXPECT_NE(result.verdict, Verdict::kAccept) << "a wall at " << distance_m << " m, tilted by " << tilt;
+            EXPECT_LE(result.log_odds_present, 0.0);
+            // Nearer, a face of the part may fill the image as the wall does, and nothing tells them apart.
+            if (distance_m > 0.15) EXPECT_EQ(result.verdict, Verdict::kLost) << distance_m << " m, tilted by " << tilt;
+        }
+    }
+}
+
+TEST(Estimator, SaysWhatKeepsAPoseFromBeingAccepted) {
+    EstimatorOptions options = small_options(method_default(), 0);
+    options.tolerance = {1e-5, 1e-5};
+    PoseEstimator estimator(kPart, kSolver, options);
+    UpdateResult result;
+    for (int frame = 0; frame < 3; ++frame)
+        result = estimator.update(observe_at(frame), frame == 0 ? std::nullopt : std::optional(motion_to(frame)));
+    EXPECT_EQ(result.verdict, Verdict::kContinue);
+    ASSERT_EQ(result.missing.size(), 2U);
+    EXPECT_EQ(result.missing[0].requirement, Requirement::kTranslation);
+    EXPECT_EQ(result.missing[0].limit, 1e-5);
+    EXPECT_EQ(result.missing[1].requirement, Requirement::kRotation);
+}
+
 TEST(Estimator, SomethingElseInViewIsNotTheObject) {
     // A bare wall takes the object's place: no pose explains it, so the result is the prediction.
     const DepthImage wall{kCamera.width, kCamera.height, std::vector<float>(160 * 120, 0.9F)};

@@ -38,6 +38,7 @@ TEST(EstimatorSetup, LeavesOneNamedPartOut) {
     EXPECT_EQ(without("shortlist").preselection.tried, 0);
     EXPECT_EQ(without("pairs").search.initialisation, Initialisation::kSurface);
     EXPECT_EQ(without("rivals").hypotheses.alternatives, 0);
+    EXPECT_LT(without("presence").verification.min_log_odds_present, -1e6);
     EXPECT_FALSE(without("confidence").choice.accepted_evidence);
     EXPECT_FALSE(without("doubts").relocalisation.low_agreement);
     EXPECT_THROW(without("wheels"), std::invalid_argument);

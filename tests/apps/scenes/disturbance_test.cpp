@@ -240,5 +240,40 @@ TEST(Disturbances, GiveTheSameBitsForTheSameSeedAndOthersForAnother) {
     }
 }
 
+RecordingOptions bare(SceneContent content) {
+    RecordingOptions options = coarse(Scenario::kSweep, 3);
+    options.disturbances.scene = content;
+    return options;
+}
+
+// Second differences of inverse depth over an image: 0 on a plane.
+double largest_bend(const DepthImage& image) {
+    double largest = 0.0;
+    const auto inverse = [&](int u, int v) { return 1.0 / image.depth_m[v * image.width + u]; };
+    for (int v = 0; v < image.height; ++v)
+        for (int u = 1; u + 1 < image.width; ++u)
+            largest = std::max(largest, std::abs(inverse(u - 1, v) - 2.0 * inverse(u, v) + inverse(u + 1, v)));
+    return largest;
+}
+
+TEST(Disturbance, AWallIsOnePlaneACornerIsNoneAndAConstantImageHasOneDepth) {
+    RecordingOptions options = bare(SceneContent::kWall);
+    options.sensor = scaled(SensorNoise{}, 0.0);
+    for (const SimulatedFrame& frame : frames_of(options)) EXPECT_LT(largest_bend(frame.depth), 1e-3);
+    options.disturbances.scene = SceneContent::kCorner;
+    EXPECT_GT(largest_bend(frames_of(options).front().depth), 1e-2);
+    options.disturbances.scene = SceneContent::kConstant;
+    for (const SimulatedFrame& frame : frames_of(options)) {
+        const auto [low, high] = std::minmax_element(frame.depth.depth_m.begin(), frame.depth.depth_m.end());
+        EXPECT_EQ(*low, *high);
+    }
+}
+
+TEST(Disturbance, ContentsOfAScenesHaveNames) {
+    for (const std::string& name : scene_content_names())
+        EXPECT_EQ(scene_content_names()[static_cast<std::size_t>(scene_content_of(name))], name);
+    EXPECT_THROW(scene_content_of("nothing"), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace nearpose::simulate

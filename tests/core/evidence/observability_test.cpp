@@ -47,5 +47,22 @@ TEST(Observability, AnObliqueDirectionIsNamedByItsNumbers) {
               (std::vector<std::string>{"slides along (0.71 0.71 0.00)"}));
 }
 
+TEST(Observability, WhatADeclaredSymmetryLeavesOpenIsNoWeakDirection) {
+    Twist sigmas = Twist::Constant(0.0001);
+    sigmas[2] = 10.0;  // turns about z, through the centre
+    Symmetries shaft;
+    shaft.continuous.push_back({Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero()});
+    EXPECT_EQ(observability_of(diagonal(sigmas), kRadius_m, kWeak_m).weak.size(), 1U);
+    EXPECT_TRUE(observability_of(diagonal(sigmas), kRadius_m, kWeak_m, shaft).weak.empty());
+    // An axis beside the centre: a turn about it also moves the centre.
+    const Eigen::Vector3d beside(0.03, 0.0, 0.0);
+    shaft.continuous[0].offset_in_object_m = beside;
+    Twist turn;
+    turn << Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitZ().cross(-beside);
+    const Matrix6d covariance = diagonal(Twist::Constant(0.0001)) + turn * turn.transpose();
+    EXPECT_TRUE(observability_of(covariance, kRadius_m, kWeak_m, shaft).weak.empty());
+    EXPECT_FALSE(observability_of(covariance, kRadius_m, kWeak_m).weak.empty());
+}
+
 }  // namespace
 }  // namespace nearpose

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace nearpose {
@@ -12,6 +13,7 @@ namespace {
 Evidence flawless() {
     Evidence evidence;
     evidence.seen = true;
+    evidence.log_odds_present = 20.0;
     evidence.pixels.segmented = true;
     evidence.pixels.model_rays = 1000;
     evidence.pixels.agreeing = 980;
@@ -25,7 +27,7 @@ Evidence flawless() {
 }
 
 Verdict verdict_of(const Evidence& evidence) {
-    return judge(evidence, Tolerance{}, Symmetries{});
+    return judge(evidence, Tolerance{}, Symmetries{}).verdict;
 }
 
 TEST(Verdict, AcceptsAPoseThatPassesEveryTest) {
@@ -39,24 +41,58 @@ TEST(Verdict, APoseThatIsNotSeenOrIsContradictedIsLost) {
     evidence = flawless();
     evidence.pixels.contradicted = 900;
     EXPECT_EQ(verdict_of(evidence), Verdict::kLost);
+    evidence = flawless();
+    evidence.log_odds_present = -2.3;  // a probability of 0.09
+    EXPECT_EQ(verdict_of(evidence), Verdict::kLost) << "walls explain the image as well";
 }
 
-TEST(Verdict, OneFailedTestIsEnoughToContinue) {
-    const std::vector<std::function<void(Evidence&)>> failures = {
-        [](Evidence& e) { e.pixels.contradicted = 150; },                      // much of what is seen disagrees
-        [](Evidence& e) { e.pixels.model_rays = 10000; },                      // hardly any of the model is seen
-        [](Evidence& e) { e.pixels.coplanar = 80; },                           // coplanar with its surroundings
-        [](Evidence& e) { e.pixels.missing_model = 5000; },                    // the mask is much larger than the model
-        [](Evidence& e) { e.alternatives_weight = 0.3; },                      // another pose explains it as well
-        [](Evidence& e) { e.alternatives_tried = false; },                     // no alternative was tried
-        [](Evidence& e) { e.covariance_about_centre(4, 4) = 0.002 * 0.002; },  // known to 5 mm only
-        [](Evidence& e) { e.covariance_about_centre(0, 0) = 0.02 * 0.02; },    // known to 3 degrees only
+// What is wrong with the evidence, and how the verdict says it.
+struct Flaw {
+    std::function<void(Evidence&)> make;
+    Requirement requirement;
+    std::string text;
+};
+
+TEST(Verdict, NamesWhatIsMissingWithFigureAndLimit) {
+    const std::vector<Flaw> flaws = {
+        {[](Evidence& e) { e.log_odds_present = 2.0; }, Requirement::kPresence,
+         "the image hardly shows more than planes: 2.0 nats, wanted 5.0"},
+        {[](Evidence& e) { e.pixels.contradicted = 150; }, Requirement::kAgreement,
+         "too little agrees: 0.87, wanted 0.93"},
+        {[](Evidence& e) { e.pixels.model_rays = 10000; }, Requirement::kSupport,
+         "too little of the model is seen: 0.10, wanted 0.30"},
+        {[](Evidence& e) { e.pixels.coplanar = 80; }, Requirement::kOutline,
+         "surfaces go on where the model ends: 0.80 of its outline, wanted 0.40 at most"},
+        {[](Evidence& e) { e.pixels.missing_model = 5000; }, Requirement::kOverlap,
+         "mask and model do not cover each other: 0.16, wanted 0.55"},
+        {[](Evidence& e) { e.alternatives_weight = 0.3, e.alternative = "half a turn about z"; },
+         Requirement::kAlternatives,
+         "another pose explains the image as well: half a turn about z, 0.30 of the probability, wanted 0.01 at most"},
+        {[](Evidence& e) { e.alternatives_tried = false; }, Requirement::kAlternativesTried,
+         "not yet compared with poses that look alike"},
+        {[](Evidence& e) { e.covariance_about_centre(4, 4) = 0.002 * 0.002; }, Requirement::kTranslation,
+         "precision: 5.0 mm along y, wanted 2.0 mm"},
+        {[](Evidence& e) { e.covariance_about_centre(0, 0) = 0.02 * 0.02; }, Requirement::kRotation,
+         "precision: 2.87 degrees about x, wanted 1.00 degrees"},
     };
-    for (std::size_t k = 0; k < failures.size(); ++k) {
+    for (const Flaw& flaw : flaws) {
         Evidence evidence = flawless();
-        failures[k](evidence);
-        EXPECT_EQ(verdict_of(evidence), Verdict::kContinue) << k;
+        flaw.make(evidence);
+        const Judgement judgement = judge(evidence, Tolerance{}, Symmetries{});
+        EXPECT_EQ(judgement.verdict, Verdict::kContinue) << flaw.text;
+        ASSERT_EQ(judgement.missing.size(), 1U) << flaw.text;
+        EXPECT_EQ(judgement.missing[0].requirement, flaw.requirement) << flaw.text;
+        EXPECT_EQ(describe(judgement.missing[0]), flaw.text);
     }
+}
+
+TEST(Verdict, NothingIsMissingOfWhatIsAcceptedAndAllOfWhatIsNot) {
+    EXPECT_TRUE(judge(flawless(), Tolerance{}, Symmetries{}).missing.empty());
+    EXPECT_EQ(describe(judge(Evidence{}, Tolerance{}, Symmetries{}).missing.at(0)), "nothing of the object was found");
+    Evidence evidence = flawless();
+    evidence.pixels.contradicted = 150;
+    evidence.alternatives_tried = false;
+    EXPECT_EQ(judge(evidence, Tolerance{}, Symmetries{}).missing.size(), 2U);
 }
 
 TEST(Verdict, RotationAboutAnAxisOfRevolutionDoesNotCount) {
@@ -64,23 +100,23 @@ TEST(Verdict, RotationAboutAnAxisOfRevolutionDoesNotCount) {
     evidence.covariance_about_centre(2, 2) = 1.0;
     Symmetries shaft;
     shaft.continuous.push_back({Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero()});
-    EXPECT_EQ(judge(evidence, Tolerance{}, shaft), Verdict::kAccept);
-    EXPECT_EQ(judge(evidence, Tolerance{}, Symmetries{}), Verdict::kContinue);
+    EXPECT_EQ(judge(evidence, Tolerance{}, shaft).verdict, Verdict::kAccept);
+    EXPECT_EQ(judge(evidence, Tolerance{}, Symmetries{}).verdict, Verdict::kContinue);
 }
 
 TEST(Verdict, AnImprecisePoseMayBeVerified) {
     Evidence evidence = flawless();
     evidence.covariance_about_centre = Matrix6d::Identity();
-    EXPECT_TRUE(is_verified(evidence));
+    EXPECT_TRUE(judge(evidence, Tolerance{}, Symmetries{}).verified);
     evidence.alternatives_weight = 0.3;
-    EXPECT_FALSE(is_verified(evidence));
+    EXPECT_FALSE(judge(evidence, Tolerance{}, Symmetries{}).verified);
 }
 
 TEST(Verdict, ToleranceIsTheUsers) {
     Evidence evidence = flawless();
     evidence.covariance_about_centre(4, 4) = 0.001 * 0.001;  // 90 % region: 2.5 mm
-    EXPECT_EQ(judge(evidence, Tolerance{0.002, 0.0175}, Symmetries{}), Verdict::kContinue);
-    EXPECT_EQ(judge(evidence, Tolerance{0.003, 0.0175}, Symmetries{}), Verdict::kAccept);
+    EXPECT_EQ(judge(evidence, Tolerance{0.002, 0.0175}, Symmetries{}).verdict, Verdict::kContinue);
+    EXPECT_EQ(judge(evidence, Tolerance{0.003, 0.0175}, Symmetries{}).verdict, Verdict::kAccept);
 }
 
 }  // namespace

@@ -138,10 +138,24 @@ TEST(Lock, AlternativesAreDueInEveryFrameUntilTheTrackIsConfirmedAndThenPeriodic
 }
 
 TEST(Lock, AcceptedEvidenceFadesAndEndsWhereTheMotionIsNotKnown) {
-    const ChoiceOptions options = method_default().choice;
-    EXPECT_DOUBLE_EQ(after_prediction(established(), true, options).accepted_evidence,
-                     options.accepted_evidence_kept * 50.0);
-    EXPECT_EQ(after_prediction(established(), false, options).accepted_evidence, 0.0);
+    const Method method = method_default();
+    EXPECT_DOUBLE_EQ(after_prediction(established(), true, method).accepted_evidence,
+                     method.choice.accepted_evidence_kept * 50.0);
+    EXPECT_EQ(after_prediction(established(), false, method).accepted_evidence, 0.0);
+}
+
+TEST(Lock, TheBeliefThatTheObjectIsThereIsABayesFilterThatForgets) {
+    const Method method = method_default();
+    Lock lock = after_assessment(
+        Lock{}, {Verdict::kAccept, true, 1.0, 0.0, log_odds_with(8.0, Lock{}, method.presence)}, method);
+    EXPECT_DOUBLE_EQ(lock.log_odds_present, 8.0);
+    EXPECT_DOUBLE_EQ(after_prediction(lock, true, method).log_odds_present, method.presence.kept * 8.0);
+    EXPECT_DOUBLE_EQ(after_prediction(lock, false, method).log_odds_present, method.presence.kept_unmeasured * 8.0);
+    EXPECT_DOUBLE_EQ(log_odds_with(3.0, lock, method.presence), 11.0) << "evidence adds up";
+    EXPECT_DOUBLE_EQ(log_odds_with(1e6, lock, method.presence), method.presence.max_log_odds);
+    EXPECT_DOUBLE_EQ(log_odds_with(-1e6, lock, method.presence), -method.presence.max_log_odds)
+        << "however long it was seen, it may be taken away";
+    EXPECT_EQ(after_choice(lock, true, std::nullopt).log_odds_present, 0.0) << "the evidence was for another pose";
 }
 
 TEST(Lock, AReplacementBeginsTheCountAnewAndAsksForAlternativesAgain) {
