@@ -2,10 +2,8 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "core/base/check.hpp"
 
@@ -93,8 +91,7 @@ std::optional<PlaneCoefficients> plane_through(const std::vector<Measured>& pixe
         gradient += ray / static_cast<double>(pixel.point.z());
         ++count;
     }
-    constexpr int kLeastPoints = 6;
-    if (count < kLeastPoints) return std::nullopt;
+    if (count < 6) return std::nullopt;  // three points span a plane, but through their noise
     const Eigen::LDLT<Eigen::Matrix3d> solver(information);
     const Eigen::Vector3d coefficients = solver.solve(gradient);
     if (!coefficients.allFinite() || !(coefficients.norm() > 0.0)) return std::nullopt;
@@ -128,8 +125,7 @@ double explained_by(const PlaneCoefficients& plane, const std::vector<Measured>&
 
 // The plane after a few rounds of least squares over what it explains.
 PlaneCoefficients settled(PlaneCoefficients plane, const std::vector<Measured>& pixels) {
-    constexpr int kRounds = 4;
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < 4; ++round) {
         const float norm = plane.norm();
         const auto better = plane_through(pixels, [&](const Measured& pixel) {
             return std::abs(residual(plane, norm, pixel.point, pixel.gate_m)) < 1.0F;
@@ -190,8 +186,6 @@ std::vector<PlaneCoefficients> fit_background(const View& view, const ObservedGr
 
 namespace {
 
-constexpr int kNoPlane = -1;
-
 // What the pose says of a pixel.
 enum class Label : char { kBackground, kObject, kOccluded, kSeenThrough };
 
@@ -200,7 +194,7 @@ struct Pixel {
     bool with_depth = false;
     Eigen::Vector3f point = Eigen::Vector3f::Zero();  // measured, in camera coordinates [m]
     float gate_m = 0.0F;
-    int plane = kNoPlane;         // that explains it best
+    int plane = -1;               // that explains it best
     float cost_without = 1.0F;    // under the null hypothesis
     float cost_of_object = 0.0F;  // of the model's ray
 };
@@ -244,7 +238,7 @@ void label_by_model(const View& view, const Pose& camera_from_object, std::vecto
 enum class Between { kUnknown, kSmooth, kStep };
 
 Between between(const Pixel& a, const Pixel& b, const std::vector<PlaneCoefficients>& planes) {
-    if (a.plane == kNoPlane || b.plane == kNoPlane) return Between::kUnknown;
+    if (a.plane == -1 || b.plane == -1) return Between::kUnknown;
     const PlaneCoefficients &p = planes[a.plane], &q = planes[b.plane];
     if (a.plane == b.plane || cost_under(p, b.point, b.gate_m) < 1.0F || cost_under(q, a.point, a.gate_m) < 1.0F)
         return Between::kSmooth;

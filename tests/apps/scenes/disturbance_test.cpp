@@ -246,22 +246,27 @@ RecordingOptions bare(SceneContent content) {
     return options;
 }
 
-// Second differences of inverse depth over an image: 0 on a plane.
-double largest_bend(const DepthImage& image) {
-    double largest = 0.0;
-    const auto inverse = [&](int u, int v) { return 1.0 / image.depth_m[v * image.width + u]; };
+// Second differences of inverse depth along rows, as lengths [m]: 0 on a plane, but for the rounding of depths.
+double largest_bend_m(const DepthImage& image) {
+    double largest_m = 0.0;
     for (int v = 0; v < image.height; ++v)
-        for (int u = 1; u + 1 < image.width; ++u)
-            largest = std::max(largest, std::abs(inverse(u - 1, v) - 2.0 * inverse(u, v) + inverse(u + 1, v)));
-    return largest;
+        for (int u = 1; u + 1 < image.width; ++u) {
+            const float* depth_m = &image.depth_m[static_cast<std::size_t>(v) * image.width + u];
+            if (depth_m[-1] == 0.0F || depth_m[0] == 0.0F || depth_m[1] == 0.0F) continue;
+            const double bend = 1.0 / depth_m[-1] - 2.0 / depth_m[0] + 1.0 / depth_m[1];
+            largest_m = std::max(largest_m, std::abs(bend) * depth_m[0] * depth_m[0]);
+        }
+    return largest_m;
 }
 
 TEST(Disturbance, AWallIsOnePlaneACornerIsNoneAndAConstantImageHasOneDepth) {
     RecordingOptions options = bare(SceneContent::kWall);
     options.sensor = scaled(SensorNoise{}, 0.0);
-    for (const SimulatedFrame& frame : frames_of(options)) EXPECT_LT(largest_bend(frame.depth), 1e-3);
+    for (const SimulatedFrame& frame : frames_of(options)) EXPECT_LT(largest_bend_m(frame.depth), 0.0003);
     options.disturbances.scene = SceneContent::kCorner;
-    EXPECT_GT(largest_bend(frames_of(options).front().depth), 1e-2);
+    double corner_m = 0.0;
+    for (const SimulatedFrame& frame : frames_of(options)) corner_m = std::max(corner_m, largest_bend_m(frame.depth));
+    EXPECT_GT(corner_m, 0.001);
     options.disturbances.scene = SceneContent::kConstant;
     for (const SimulatedFrame& frame : frames_of(options)) {
         const auto [low, high] = std::minmax_element(frame.depth.depth_m.begin(), frame.depth.depth_m.end());
