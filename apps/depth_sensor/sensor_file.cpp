@@ -16,6 +16,9 @@ NEARPOSE_EMBEDDED(d435_json)
 NEARPOSE_EMBEDDED(f200_json)
 NEARPOSE_EMBEDDED(ideal_json)
 NEARPOSE_EMBEDDED(kinect_v1_json)
+NEARPOSE_EMBEDDED(stereo_d405_json)
+NEARPOSE_EMBEDDED(stereo_d415_json)
+NEARPOSE_EMBEDDED(stereo_d435_json)
 
 namespace nearpose::simulate {
 namespace {
@@ -26,7 +29,9 @@ using data_set::JsonFile;
 using data_set::JsonValue;
 
 constexpr int kFormat = 1;
-constexpr const char* kRadius = "edge_radius_pixels";  // the one whole number
+constexpr const char* kRadius = "edge_radius_pixels";  // the one whole number of the noise
+constexpr const char* kNoise = "noise";
+constexpr const char* kStereo = "active_stereo";
 
 struct Figure {
     const char* key;
@@ -63,6 +68,40 @@ constexpr std::array kFigures{
 // All doubles, and the radius padded to one: a figure that is added to SensorNoise must be added here.
 static_assert(sizeof(SensorNoise) == (kFigures.size() + 1) * sizeof(double));
 
+struct StereoFigure {
+    const char* key;
+    double StereoRig::*value;
+};
+constexpr std::array kStereoFigures{
+    StereoFigure{"baseline_m", &StereoRig::baseline_m},
+    StereoFigure{"projector_m", &StereoRig::projector_m},
+    StereoFigure{"dot_sigma_tan", &StereoRig::dot_sigma_tan},
+    StereoFigure{"projector_width_tan", &StereoRig::projector_width_tan},
+    StereoFigure{"projector_height_tan", &StereoRig::projector_height_tan},
+    StereoFigure{"ambient", &StereoRig::ambient},
+    StereoFigure{"infrared_sigma_grey", &StereoRig::infrared_sigma_grey},
+    StereoFigure{"blur_pixels", &StereoRig::blur_pixels},
+    StereoFigure{"min_range_m", &StereoRig::min_range_m},
+    StereoFigure{"max_range_m", &StereoRig::max_range_m},
+};
+struct StereoNumber {
+    const char* key;
+    int StereoRig::*value;
+};
+constexpr std::array kStereoNumbers{
+    StereoNumber{"dots", &StereoRig::dots},
+    StereoNumber{"rays_per_pixel", &StereoRig::rays_per_pixel},
+    StereoNumber{"window_pixels", &StereoRig::window_pixels},
+    StereoNumber{"penalty_step", &StereoRig::penalty_step},
+    StereoNumber{"penalty_jump", &StereoRig::penalty_jump},
+    StereoNumber{"uniqueness_percent", &StereoRig::uniqueness_percent},
+    StereoNumber{"left_right_pixels", &StereoRig::left_right_pixels},
+    StereoNumber{"speckle_pixels", &StereoRig::speckle_pixels},
+    StereoNumber{"speckle_range_pixels", &StereoRig::speckle_range_pixels},
+};
+// The number of dots is padded to a double. A figure that is added to StereoRig must be added here.
+static_assert(sizeof(StereoRig) == kStereoFigures.size() * sizeof(double) + kStereoNumbers.size() * sizeof(int) + 4);
+
 std::string listed(const std::vector<std::string>& words) {
     std::string text;
     for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
@@ -97,15 +136,31 @@ SensorNoise read_noise(const JsonValue& object) {
     return noise;
 }
 
+std::vector<std::string> stereo_keys() {
+    std::vector<std::string> keys;
+    for (const StereoFigure& figure : kStereoFigures) keys.emplace_back(figure.key);
+    for (const StereoNumber& number : kStereoNumbers) keys.emplace_back(number.key);
+    return keys;
+}
+
+StereoRig read_stereo(const JsonValue& object) {
+    refuse_other_keys(object, stereo_keys());
+    StereoRig rig;
+    for (const StereoFigure& figure : kStereoFigures) rig.*figure.value = object.at(figure.key).number();
+    for (const StereoNumber& number : kStereoNumbers) rig.*number.value = object.at(number.key).integer();
+    return rig;
+}
+
 void validate(const SensorDescription& sensor) {
     validate(sensor.camera);
     simulate::validate(sensor.noise);
+    if (sensor.stereo) simulate::validate(*sensor.stereo);
     check_option("depth_scale_mm", sensor.depth_scale_mm, 1e-4, 100.0);
 }
 
 SensorDescription read_description(const JsonFile& file) {
     const JsonValue root = file.root();
-    refuse_other_keys(root, {"format", "name", "description", "camera", "depth_scale_mm", "noise", "sources"});
+    refuse_other_keys(root, {"format", "name", "description", "camera", "depth_scale_mm", kNoise, kStereo, "sources"});
     const int format = root.at("format").integer();
     if (format != kFormat) {
         throw root.at("format").error("is " + std::to_string(format) + ", but must be " + std::to_string(kFormat));
@@ -115,9 +170,18 @@ SensorDescription read_description(const JsonFile& file) {
     sensor.description = root.at("description").text();
     sensor.camera = read_camera(root.at("camera"));
     sensor.depth_scale_mm = root.at("depth_scale_mm").number();
-    sensor.noise = read_noise(root.at("noise"));
+    const auto stereo = root.find(kStereo);
+    if (stereo) sensor.stereo = read_stereo(*stereo);
+    if (!stereo || root.find(kNoise)) sensor.noise = read_noise(root.at(kNoise));
+    if (stereo && !root.find(kNoise)) {
+        sensor.noise.min_range_m = sensor.stereo->min_range_m;
+        sensor.noise.max_range_m = sensor.stereo->max_range_m;
+    }
+    if (stereo && (sensor.noise.min_range_m != sensor.stereo->min_range_m ||
+                   sensor.noise.max_range_m != sensor.stereo->max_range_m))
+        throw stereo->error("min_range_m and max_range_m must be those of noise");
     const JsonValue sources = root.at("sources");
-    refuse_other_keys(sources, sensor_figures());
+    refuse_other_keys(sources, sensor_figures({kNoise, kStereo}));
     for (const auto& [key, value] : sources.members()) sensor.sources[key] = value.text();
     try {
         validate(sensor);
@@ -134,7 +198,10 @@ const std::map<std::string, std::string_view>& built_in() {
         {"d435", NEARPOSE_EMBEDDED_BYTES(d435_json)},
         {"f200", NEARPOSE_EMBEDDED_BYTES(f200_json)},
         {"ideal", NEARPOSE_EMBEDDED_BYTES(ideal_json)},
-        {"kinect_v1", NEARPOSE_EMBEDDED_BYTES(kinect_v1_json)}};
+        {"kinect_v1", NEARPOSE_EMBEDDED_BYTES(kinect_v1_json)},
+        {"stereo_d405", NEARPOSE_EMBEDDED_BYTES(stereo_d405_json)},
+        {"stereo_d415", NEARPOSE_EMBEDDED_BYTES(stereo_d415_json)},
+        {"stereo_d435", NEARPOSE_EMBEDDED_BYTES(stereo_d435_json)}};
     return files;
 }
 
@@ -149,9 +216,12 @@ const std::vector<std::string>& sensor_names() {
     return names;
 }
 
-std::vector<std::string> sensor_figures() {
+std::vector<std::string> sensor_figures(const std::vector<std::string>& sections) {
     std::vector<std::string> keys{"camera", "depth_scale_mm"};
-    for (const std::string& key : noise_keys()) keys.push_back("noise." + key);
+    for (const std::string& section : sections) {
+        const std::vector<std::string> figures = section == kNoise ? noise_keys() : stereo_keys();
+        for (const std::string& figure : figures) keys.push_back(section + "." + figure);
+    }
     return keys;
 }
 
@@ -170,6 +240,8 @@ SensorDescription read_sensor(const std::string& name_or_path) {
 
 void write_sensor(const std::filesystem::path& path, const SensorDescription& sensor) {
     validate(sensor);
+    if (sensor.stereo)
+        throw std::invalid_argument(sensor.name + ": an active_stereo sensor cannot be written, only simple noise");
     const PinholeCamera& camera = sensor.camera;
     std::string text = "{\n  \"format\": " + std::to_string(kFormat) + ",\n  \"name\": " + json_string(sensor.name) +
                        ",\n  \"description\": " + json_string(sensor.description) +

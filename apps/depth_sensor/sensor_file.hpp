@@ -3,10 +3,12 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/depth_sensor/sensor_noise.hpp"
+#include "apps/depth_sensor/stereo_rig.hpp"
 #include "core/base/camera.hpp"
 
 namespace nearpose::simulate {
@@ -16,13 +18,15 @@ struct SensorDescription {
     std::string description;
     PinholeCamera camera;
     double depth_scale_mm = 1.0;  // millimetres per count
-    SensorNoise noise;
+    SensorNoise noise;            // beside `stereo` what its depth is like; only the range is used there
+    std::optional<StereoRig> stereo;
     // Where a figure comes from, by its key: "camera", "depth_scale_mm", "noise.sigma_floor_m" and so on.
     std::map<std::string, std::string> sources;
 };
 
-// The keys that `sources` may have.
-std::vector<std::string> sensor_figures();
+// The keys of the figures that a file with these sections has, of "noise" and "active_stereo", with those of its
+// camera.
+std::vector<std::string> sensor_figures(const std::vector<std::string>& sections);
 
 // The names of those that are built in.
 const std::vector<std::string>& sensor_names();

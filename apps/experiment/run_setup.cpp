@@ -83,8 +83,11 @@ void set_sensor(const Settings& settings, const fs::path& folder, simulate::Reco
         options.camera = sensor.camera;
         options.depth_scale_mm = sensor.depth_scale_mm;
         options.sensor = sensor.noise;
+        options.stereo = sensor.stereo;
     }
     options.sensor = simulate::scaled(options.sensor, number(settings, "noise_scale"));
+    options.stereo = simulate::scaled(options.stereo, number(settings, "noise_scale"));
+    options.material = setting<std::string>(settings, "material").value_or(options.material);
     const auto scale = static_cast<int>(number(settings, "image_scale"));
     PinholeCamera& camera = options.camera;
     camera.width /= scale;

@@ -4,6 +4,7 @@
 
 #include "apps/base/nearest_word.hpp"
 #include "apps/base/number_text.hpp"
+#include "apps/depth_sensor/stereo_rig.hpp"
 #include "apps/experiment/cad_error.hpp"
 #include "apps/runs/estimator_setup.hpp"
 #include "apps/scenes/disturbance.hpp"
@@ -58,6 +59,7 @@ void add_recording_rules(std::vector<SettingRule>& rules) {
         rules.push_back({kKind, kUse, name, type, 0.0, high, std::move(words), {}, std::move(unsaid)});
     };
     add_later("scene", SettingType::kWord, 0.0, simulate::scene_content_names(), "part");
+    add_later("material", SettingType::kWord, 0.0, simulate::material_names(), "cast_iron");
     add_later("nonsense_frames", SettingType::kWhole, 1e5, {}, 0.0);
     add_later("look_away", SettingType::kWhole, 1e5, {}, 0.0);  // frames
     add_later("object_moves", SettingType::kFlag, 0.0, {}, false);

@@ -64,10 +64,17 @@ Mask none_of(const Mask& mask) {
     return {mask.width, mask.height, std::vector<std::uint8_t>(mask.value.size(), 0)};
 }
 
-// What the camera has before it, and what of it a segmentation takes for the part.
+// What the camera has before it, what of it a segmentation takes for the part, and the same from other viewpoints.
 struct Sight {
     RenderedFrame rendered;
     Mask segmented;
+    RenderFrom render_from;
+};
+
+// What the sensor makes of it.
+struct Measured {
+    DepthImage depth;
+    std::optional<InfraredPair> infrared;
 };
 
 Part with_surface_points(Part part, const Mesh& mesh, Scenario scenario) {
@@ -97,6 +104,13 @@ void validate(const RecordingOptions& options) {
     validate(options.camera);
     validate(options.path, options.scenario);
     validate(options.sensor);
+    material_of(options.material);
+    if (options.stereo) {
+        validate(*options.stereo);
+        require_stereo();
+        if (options.disturbances.scene == SceneContent::kConstant)
+            throw std::invalid_argument("the scene 'constant' has no infrared images: take a sensor without stereo");
+    }
     validate(options.arm);
     validate(options.mask);
     validate(options.disturbances, options.scenario, frames_of(options), frames_of(options) - num_dropped(options));
@@ -155,17 +169,23 @@ struct Recording::Impl {
         const auto look = [&](const Pose& pose, bool with_part) {
             return stage.scene.render(pose, camera_from_scene, options.camera, with_part);
         };
+        const auto render_from = [&](const Pose& pose, bool with_part) -> RenderFrom {
+            return [this, pose, camera_from_scene, with_part](const Pose& from_camera, const PinholeCamera& lens) {
+                return stage.scene.render_from(from_camera, pose, camera_from_scene, lens, with_part);
+            };
+        };
         const SceneContent content = options.disturbances.scene;
         if (content == SceneContent::kEmpty || is_bare(content)) {
             const InstanceView part = look(camera_from_object, true).instances[0];
-            Sight bare{look(camera_from_object, false), blob_over(is_bare(content) ? part.silhouette : part.visible)};
+            Sight bare{look(camera_from_object, false), blob_over(is_bare(content) ? part.silhouette : part.visible),
+                       render_from(camera_from_object, false)};
             if (content == SceneContent::kConstant)
                 bare.rendered.image = with_one_depth(std::move(bare.rendered.image));
             return bare;
         }
         const bool there = !looks_away(options.disturbances, frame, frames_of(options));
-        Sight sight{look(stage.other ? camera_from_scene * stage.other->scene_from_object : camera_from_object, there),
-                    {}};
+        const Pose shown = stage.other ? camera_from_scene * stage.other->scene_from_object : camera_from_object;
+        Sight sight{look(shown, there), {}, render_from(shown, there)};
         InstanceView& tracked = sight.rendered.instances.front();
         sight.segmented = tracked.visible;
         if (stage.other) {  // of the part itself there is nothing
@@ -175,12 +195,23 @@ struct Recording::Impl {
         return sight;
     }
 
-    DepthImage depth_of(const RenderedImage& image, int frame) const {
+    Measured measure(const Sight& sight, int frame) const {
         const auto found = std::find(events.nonsense.begin(), events.nonsense.end(), frame);
-        if (found == events.nonsense.end()) return sensor.measure(image, static_cast<std::uint64_t>(frame));
-        const bool flat = (found - events.nonsense.begin()) % 2 == 1;  // in turns
-        return nonsense_depth(options.camera, within_counts(options.sensor, options.depth_scale_mm), flat, options.seed,
-                              frame);
+        const auto number = static_cast<std::uint64_t>(frame);
+        if (found != events.nonsense.end()) {
+            const bool flat = (found - events.nonsense.begin()) % 2 == 1;  // in turns
+            return {nonsense_depth(options.camera, within_counts(options.sensor, options.depth_scale_mm), flat,
+                                   options.seed, frame),
+                    std::nullopt};
+        }
+        if (!options.stereo) return {sensor.measure(sight.rendered.image, number), std::nullopt};
+        const int num_parts = 1 + static_cast<int>(stage.world.copies.size());
+        StereoRig rig = *options.stereo;
+        rig.max_range_m = within_counts(options.sensor, options.depth_scale_mm).max_range_m;
+        InfraredPair infrared = infrared_images(sight.render_from, options.camera, rig, material_of(options.material),
+                                                num_parts, options.seed, number);
+        DepthImage depth = depth_of(infrared, options.camera, rig);
+        return {std::move(depth), options.keep_infrared ? std::optional(std::move(infrared)) : std::nullopt};
     }
 
     // Of instance `index` of the scene; 0: such as the data set does not have.
@@ -227,10 +258,11 @@ SimulatedFrame Recording::frame(int index) const {
     frame.part_moved = impl_->events.moved_from && frame.id >= *impl_->events.moved_from;
     Sight sight = impl_->sight_at(frame.id);
     RenderedFrame& rendered = sight.rendered;
+    Measured measured = impl_->measure(sight, frame.id);
+    frame.infrared = std::move(measured.infrared);
     // Through counts and back, as through a file.
-    frame.depth = data_set::depth_from_counts(
-        data_set::counts_from_depth(impl_->depth_of(rendered.image, frame.id), options.depth_scale_mm),
-        options.depth_scale_mm);
+    frame.depth = data_set::depth_from_counts(data_set::counts_from_depth(measured.depth, options.depth_scale_mm),
+                                              options.depth_scale_mm);
     for (std::size_t i = 0; i < rendered.instances.size(); ++i) {
         data_set::ObjectTruth& truth = rendered.instances[i].truth;
         truth.object_id = impl_->object_id_at(i);

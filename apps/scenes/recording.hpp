@@ -10,6 +10,8 @@
 
 #include "apps/data_set/bop_writer.hpp"
 #include "apps/depth_sensor/sensor_noise.hpp"
+#include "apps/depth_sensor/stereo_rig.hpp"
+#include "apps/depth_sensor/stereo_sensor.hpp"
 #include "apps/scenes/arm.hpp"
 #include "apps/scenes/disturbance.hpp"
 #include "apps/scenes/mask_errors.hpp"
@@ -33,6 +35,11 @@ struct RecordingOptions {
     PinholeCamera camera = default_camera();
     double depth_scale_mm = 0.1;  // millimetres per count: depth is rounded to it
     SensorNoise sensor;           // already scaled
+    // Depth by matching two infrared images instead; of the sensor above the range alone counts. The camera above is
+    // the left infrared camera, whatever its size and focal length.
+    std::optional<StereoRig> stereo;
+    std::string material = "cast_iron";  // of the part and its copies, as the infrared cameras see it
+    bool keep_infrared = false;          // in SimulatedFrame::infrared
     ArmErrors arm;
     MaskErrors mask;                // of given_mask
     double dropped_fraction = 0.0;  // of the frames, never the first
@@ -60,8 +67,10 @@ struct SimulatedFrame {
     int id = 0;  // place on the path; dropped frames leave gaps
     double stamp_s = 0.0;
     DepthImage depth;  // measured, in whole counts of the depth scale
-    Mask visible;      // exact: pixels that show the part; of a frame of nonsense: that would
-    Mask silhouette;   // exact: pixels whose ray meets the part, also behind others
+    // What depth was matched from, where it was and RecordingOptions::keep_infrared asks for it.
+    std::optional<InfraredPair> infrared;
+    Mask visible;     // exact: pixels that show the part; of a frame of nonsense: that would
+    Mask silhouette;  // exact: pixels whose ray meets the part, also behind others
     // What an estimator is given: `visible` with the mask's errors; without the part, that of what is taken for it.
     Mask given_mask;
     bool nonsense = false;    // the depth is not of the scene

@@ -179,4 +179,20 @@ RenderedFrame Scene::render(const Pose& camera_from_object, const Pose& camera_f
     return frame;
 }
 
+RenderedImage Scene::render_from(const Pose& viewpoint_from_camera, const Pose& camera_from_object,
+                                 const Pose& camera_from_scene, const PinholeCamera& lens, bool with_part) const {
+    const Pose viewpoint_from_scene = viewpoint_from_camera * camera_from_scene;
+    RenderedImage image = empty_image(lens);
+    int object = kPartIndex;
+    if (with_part) enter_thing(part_, viewpoint_from_camera * camera_from_object, lens, object, image);
+    ++object;
+    for (const Pose& scene_from_copy : scene_from_copies_)
+        enter_thing(part_, viewpoint_from_scene * scene_from_copy, lens, object++, image);
+    if (other_) enter_thing(*other_, viewpoint_from_scene * scene_from_other_, lens, object++, image);
+    if (table_) enter_table(*table_, viewpoint_from_scene * table_->scene_from_ground, lens, object++, image);
+    if (surroundings_) enter_thing(*surroundings_, viewpoint_from_scene, lens, object++, image);
+    if (gripper_) enter_thing(*gripper_, viewpoint_from_camera, lens, object++, image);
+    return image;
+}
+
 }  // namespace nearpose::simulate

@@ -38,6 +38,11 @@ class Scene {
     RenderedFrame render(const Pose& camera_from_object, const Pose& camera_from_scene, const PinholeCamera& camera,
                          bool with_part = true) const;
 
+    // The image alone, from another viewpoint than that of the camera, to which the gripper is fixed. `lens` has the
+    // intrinsics there.
+    RenderedImage render_from(const Pose& viewpoint_from_camera, const Pose& camera_from_object,
+                              const Pose& camera_from_scene, const PinholeCamera& lens, bool with_part = true) const;
+
     const EmbreeScene& part() const { return part_; }
 
   private:

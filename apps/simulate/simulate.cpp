@@ -29,6 +29,10 @@ constexpr int kUnnamedId = 1;  // of a part that is not built in
 // Share of the silhouette that must be seen for another instance to be asked for, as BOP's own lists have it.
 constexpr double kLeastVisibleFraction = 0.1;
 
+void write_grey(const fs::path& path, const GreyImage& image) {
+    data_set::write_file_atomically(path, data_set::grey_png_bytes(image.width, image.height, image.value));
+}
+
 // Simulates one frame and writes its images.
 data_set::FrameRecord write_frame(const Recording& recording, int index, const fs::path& folder) {
     const SimulatedFrame frame = recording.frame(index);
@@ -39,6 +43,10 @@ data_set::FrameRecord write_frame(const Recording& recording, int index, const f
     record.camera_from_world = frame.camera_from_world;
     record.timestamp_s = frame.stamp_s;
     data_set::write_depth_png(data_set::depth_path(folder, frame.id), frame.depth, record.depth_scale_mm);
+    if (frame.infrared) {
+        write_grey(folder / "infrared_left" / (data_set::zero_padded(frame.id) + ".png"), frame.infrared->left);
+        write_grey(folder / "infrared_right" / (data_set::zero_padded(frame.id) + ".png"), frame.infrared->right);
+    }
     const auto add_object = [&](const data_set::ObjectTruth& truth, const Mask& visible, const Mask& silhouette) {
         const int instance = static_cast<int>(record.objects.size());
         data_set::write_mask_png(data_set::mask_path(folder, frame.id, instance, true), visible);
@@ -111,6 +119,8 @@ void write_lists(const std::vector<data_set::FrameRecord>& records, const fs::pa
 bool write_frames(const Recording& recording, const fs::path& scene_folder, int num_threads,
                   const std::function<bool()>& frame_done, std::vector<data_set::FrameRecord>& records) {
     for (const char* name : {"depth", "mask", "mask_visib"}) data_set::create_folder(scene_folder / name);
+    if (recording.options().keep_infrared)
+        for (const char* name : {"infrared_left", "infrared_right"}) data_set::create_folder(scene_folder / name);
     records.resize(static_cast<std::size_t>(recording.num_frames()));
     std::atomic<bool> stopped = false;
     std::mutex mutex;

@@ -28,9 +28,10 @@ struct SimulationSummary {
 // Writes test/000001/{depth, mask, mask_visib, scene_*.json}, camera.json, models, models_eval,
 // test_targets_bop19.json and truth.tum (camera_from_object of the tracked part, which is the first in the ground
 // truth). The tracked part's mask_visib is the given mask, with its errors. For a built-in part the models are all of
-// them; models_info.json has the exact symmetries found. The same options, but for the number of threads, give the
-// same bytes on one machine. `frame_done` is called once a frame, never twice at the same time, and returns false to
-// stop. Throws std::invalid_argument for options out of bounds and std::runtime_error where files cannot be written.
+// them; models_info.json has the exact symmetries found. With keep_infrared also test/000001/infrared_left and _right.
+// The same options, but for the number of threads, give the same bytes on one machine. `frame_done` is called once a
+// frame, never twice at the same time, and returns false to stop. Throws std::invalid_argument for options out of
+// bounds and std::runtime_error where files cannot be written.
 SimulationSummary write_data_set(const Mesh& mesh, const Part& part, const SimulationOptions& options,
                                  const std::function<bool()>& frame_done);
 

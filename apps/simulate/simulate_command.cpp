@@ -41,6 +41,8 @@ struct SimulateOptions {
     std::string sensor;
     std::filesystem::path camera;
     double noise_scale = 1.0;
+    std::optional<std::string> material;
+    bool save_infrared = false;
     double drop_frames = 0.0;
 
     double arm_mm = 0.1, arm_deg = 0.02;
@@ -83,6 +85,7 @@ void set_sensor(const SimulateOptions& command, RecordingOptions& options) {
         options.camera = sensor.camera;
         options.depth_scale_mm = sensor.depth_scale_mm;
         options.sensor = sensor.noise;
+        options.stereo = sensor.stereo;
     }
     if (!command.camera.empty()) {
         const data_set::CameraFile file = data_set::read_camera_json(command.camera);
@@ -90,6 +93,12 @@ void set_sensor(const SimulateOptions& command, RecordingOptions& options) {
         if (file.depth_scale_mm) options.depth_scale_mm = *file.depth_scale_mm;
     }
     options.sensor = simulate::scaled(options.sensor, command.noise_scale);
+    options.stereo = simulate::scaled(options.stereo, command.noise_scale);
+    if (!options.stereo && (command.material || command.save_infrared))
+        throw BadUse(std::string(command.material ? "--material" : "--save-infrared") +
+                     " belongs to a --sensor that matches infrared images, such as stereo_d435, with noise");
+    options.material = command.material.value_or(options.material);
+    options.keep_infrared = command.save_infrared;
 }
 
 SimulationOptions simulation_options(const SimulateOptions& command) {
@@ -193,12 +202,18 @@ void add_sensor_options(CLI::App& command, SimulateOptions& options) {
     for (const std::string& name : simulate::sensor_names()) names += (names.empty() ? "" : ", ") + name;
     command.add_option("--sensor", options.sensor,
                        "Sets camera, depth scale and noise: " + names +
-                           ", or a JSON file; without it a close-range "
+                           ", or a JSON file (stereo_...: matches two rendered images); without it a close-range "
                            "stereo camera, 640x480 with fx = fy = 600 pixels, 0.1 mm a count");
     command.add_option("--camera", options.camera, "camera.json, instead of the sensor's own camera and depth scale")
         ->check(CLI::ExistingFile);
     command.add_option("--noise-scale", options.noise_scale, "Times the sensor's faults; 0: exact depth")
         ->check(CLI::Range(0.0, 100.0));
+    command
+        .add_option("--material", options.material,
+                    "What the part is made of, for sensors that match infrared images; else cast_iron")
+        ->check(CLI::IsMember(simulate::material_names()));
+    command.add_flag("--save-infrared", options.save_infrared,
+                     "Also write the images that such a sensor matches, as infrared_left and infrared_right");
     command.add_option("--drop-frames", options.drop_frames, "Fraction of the frames that are lost, never the first")
         ->check(CLI::Range(0.0, 0.95));
     command.add_option("--mask-grow", options.mask.grow_pixels, "Given mask: pixels to dilate, negative: to erode")
@@ -206,7 +221,8 @@ void add_sensor_options(CLI::App& command, SimulateOptions& options) {
     command
         .add_option("--mask-bleed", options.mask.bleed_pixels, "Given mask: pixels to spill onto what touches the part")
         ->check(CLI::Range(0, 1000));
-    for (const char* name : {"--sensor", "--camera", "--noise-scale", "--drop-frames", "--mask-grow", "--mask-bleed"}) {
+    for (const char* name : {"--sensor", "--camera", "--noise-scale", "--material", "--save-infrared", "--drop-frames",
+                             "--mask-grow", "--mask-bleed"}) {
         command.get_option(name)->group("Sensor");
     }
 }

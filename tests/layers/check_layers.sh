@@ -71,6 +71,8 @@ forbid 'optim/|raycast/embree|core/(estimator|update|fit|evidence|observation|fi
 forbid 'ceres/|flann|omp\.h' 'a heavy library outside its folder' "${raycast[@]}"
 forbid 'embree|assimp|flann|omp\.h' 'a heavy library outside its folder' "${optim[@]}"
 forbid 'flann|omp\.h' 'a heavy library outside its folder' "${apps[@]}"
+forbid 'opencv' 'OpenCV outside stereo_matcher.cpp' "${core[@]}" "${raycast[@]}" "${optim[@]}" \
+    $(printf '%s\n' "${apps[@]}" | grep -vx apps/depth_sensor/stereo_matcher.cpp)
 
 # Values; the ports; what is measured; shapes, evidence, filter, search and fit, each on those before it; the method and
 # its options; the stages of an update; the estimator.

@@ -69,11 +69,13 @@ TEST(SensorFile, ThoseOfExperimentsDifferFromCloseStereoInOneFigure) {
 }
 
 TEST(SensorFile, EveryFigureOfTheBuiltInOnesHasItsSource) {
-    EXPECT_EQ(sensor_names().size(), 6u);
+    EXPECT_EQ(sensor_names().size(), 9u);
     for (const std::string& name : sensor_names()) {
         const SensorDescription sensor = read_sensor(name);
         EXPECT_EQ(sensor.name, name);
-        for (const std::string& key : sensor_figures()) {
+        const bool is_stereo = name.find("stereo_") == 0;
+        EXPECT_EQ(sensor.stereo.has_value(), is_stereo);
+        for (const std::string& key : sensor_figures({is_stereo ? "active_stereo" : "noise"})) {
             EXPECT_TRUE(sensor.sources.count(key) == 1 && sensor.sources.at(key).size() > 10) << name << " " << key;
         }
     }
@@ -81,6 +83,7 @@ TEST(SensorFile, EveryFigureOfTheBuiltInOnesHasItsSource) {
 
 TEST(SensorFile, WhatIsWrittenIsReadBack) {
     for (const std::string& name : sensor_names()) {
+        if (read_sensor(name).stereo) continue;
         const std::string text = written(read_sensor(name));
         EXPECT_EQ(written(read_sensor(test_file(text).string())), text);
     }
@@ -112,6 +115,35 @@ TEST(SensorFile, ErrorsNameFileKeyValueAndBound) {
     has(problem_of(replaced(good, "\"edge_radius_pixels\": 2", "\"edge_radius_pixels\": 2.5")), "edge_radius_pixels");
     has(problem_of(replaced(good, "\"noise.jitter_pixels\"", "\"noise.jit\"")), "sources/noise.jit: unknown key");
     EXPECT_THROW(read_sensor("d999"), std::runtime_error);
+}
+
+TEST(SensorFile, OfActiveStereoRefusesBadFigures) {
+    const std::string good = data_set::read_whole_file("apps/sensors/stereo_d435.json", 1 << 20);
+    EXPECT_EQ(problem_of(good), "");
+    const auto has = [](const std::string& text, const std::string& part) {
+        EXPECT_NE(text.find("sensor.json"), std::string::npos) << text;
+        EXPECT_NE(text.find(part), std::string::npos) << text;
+    };
+    has(problem_of(replaced(good, "\"baseline_m\": 0.05", "\"baseline_m\": 0")), "active_stereo.baseline_m is 0");
+    has(problem_of(replaced(good, "\"window_pixels\": 9", "\"window_pixels\": 8")),
+        "active_stereo.window_pixels is 8, but must be odd");
+    has(problem_of(replaced(good, "\"dots\": 20000", "\"dots\": 0.5")), "active_stereo/dots");
+    has(problem_of(replaced(good, "\"dots\": 20000", "\"spots\": 20000")), "active_stereo/spots: unknown key");
+    has(problem_of(replaced(good, "\"max_range_m\": 4.0", "\"max_range_m\": 0.1")), "max_range_m is 0.1");
+    has(problem_of(replaced(good, "\"penalty_jump\": 8", "\"penalty_jump\": 2")), "active_stereo.penalty_jump is 2");
+}
+
+TEST(SensorFile, OfActiveStereoMayAlsoHoldTheNoiseThatItsDepthIsLike) {
+    const std::string stereo = data_set::read_whole_file("apps/sensors/stereo_d435.json", 1 << 20);
+    const std::string noise = data_set::read_whole_file("apps/sensors/d435.json", 1 << 20);
+    const std::size_t begin = noise.find("  \"noise\""), end = noise.find("  \"sources\"");
+    const std::string both =
+        replaced(stereo, "  \"active_stereo\"", noise.substr(begin, end - begin) + "  \"active_stereo\"");
+    EXPECT_NE(problem_of(both).find("must be those of noise"), std::string::npos) << problem_of(both);
+    const SensorDescription sensor =
+        read_sensor(test_file(replaced(both, "\"max_range_m\": 10.0", "\"max_range_m\": 4.0")).string());
+    EXPECT_TRUE(sensor.stereo);
+    EXPECT_EQ(sensor.noise.sigma_per_square_metre, read_sensor("d435").noise.sigma_per_square_metre);
 }
 
 }  // namespace

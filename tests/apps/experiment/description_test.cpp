@@ -185,5 +185,11 @@ TEST(Description, ShippedOnesAreGood) {
     }
 }
 
+TEST(Description, ThatOfStereoSensorsIsGoodWhereTheyAreBuilt) {
+    const Description description = read_description("apps/experiments/stereo.json");
+    if (!simulate::stereo_is_built()) GTEST_SKIP() << "built without OpenCV: no stereo matching";
+    EXPECT_NO_THROW(check(description));
+}
+
 }  // namespace
 }  // namespace nearpose::experiment

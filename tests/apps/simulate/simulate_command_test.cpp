@@ -6,6 +6,8 @@
 #include "apps/data_set/bop_models.hpp"
 #include "apps/data_set/camera_json.hpp"
 #include "apps/data_set/json_file.hpp"
+#include "apps/data_set/png_file.hpp"
+#include "apps/depth_sensor/stereo_matcher.hpp"
 #include "tests/apps/support/tiny_scene.hpp"
 
 namespace nearpose::program_tests {
@@ -55,6 +57,27 @@ TEST(SimulateCommand, SensorSetsTheCameraUnlessOneIsNamed) {
     EXPECT_EQ(data_set::read_camera_json(folder / "named/camera.json").depth_scale_mm, 0.5);
     const data_set::JsonFile truth(folder / "named/test/000001/scene_gt.json");
     EXPECT_EQ(truth.root().at("0").elements().at(0).at("obj_id").integer(), 3);
+}
+
+TEST(SimulateCommand, InfraredImagesAreOfSensorsThatMatchThem) {
+    const fs::path folder = fresh_folder("infrared");
+    data_set::write_camera_json(folder / "camera.json", {96, 72, 90.0, 90.0, 47.5, 35.5}, 0.1);
+    const std::string command = "simulate --quiet --frames 1 --part bracket --camera " +
+                                (folder / "camera.json").string() + " --out " + (folder / "set").string();
+    for (const char* option : {" --save-infrared", " --material plastic"}) {
+        const Outcome noise = run_nearpose(command + " --sensor d435" + option);
+        EXPECT_EQ(noise.exit_code, 2);
+        EXPECT_NE(noise.err.find("stereo_d435"), std::string::npos) << noise.err;
+    }
+    const Outcome stereo = run_nearpose(command + " --sensor stereo_d435 --material plastic --save-infrared");
+    if (!simulate::stereo_is_built()) {
+        EXPECT_NE(stereo.exit_code, 0);
+        EXPECT_NE(stereo.err.find("install_packages.sh stereo"), std::string::npos) << stereo.err;
+        return;
+    }
+    ASSERT_EQ(stereo.exit_code, 0) << stereo.err;
+    for (const char* name : {"depth", "infrared_left", "infrared_right"})
+        EXPECT_EQ(data_set::read_png_size(folder / "set/test/000001" / name / "000000.png").width, 96) << name;
 }
 
 // A square column: four turns about its axis and half turns about axes across.
