@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -167,6 +168,22 @@ void add(const MeshRepair& counts, MeshRepair& sum) {
 }
 
 }  // namespace
+
+double surface_area_m2(const Mesh& mesh) {
+    if (mesh.is_cloud()) {
+        const double disc_m2 = std::numbers::pi * static_cast<double>(mesh.disc_radius_m * mesh.disc_radius_m);
+        return disc_m2 * static_cast<double>(mesh.vertices_in_object.size());
+    }
+    double doubled = 0.0;
+    for (const auto& triangle : mesh.triangles) {
+        const auto corner = [&](int k) -> Eigen::Vector3d {
+            return mesh.vertices_in_object[static_cast<std::size_t>(triangle[static_cast<std::size_t>(k)])]
+                .cast<double>();
+        };
+        doubled += (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
+    }
+    return 0.5 * doubled;
+}
 
 ModelExtent extent_of(const Mesh& mesh) {
     Eigen::AlignedBox3f box;

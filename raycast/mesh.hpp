@@ -23,6 +23,9 @@ struct Mesh {
 // The box around all vertices; the mesh must have at least one and all must be finite (clean sees to it).
 ModelExtent extent_of(const Mesh& mesh);
 
+// The area of all triangles, or of all discs of a cloud, each counted in full [m^2].
+double surface_area_m2(const Mesh& mesh);
+
 // What was wrong with a mesh and left out of it.
 struct MeshRepair {
     std::int64_t triangles_degenerate = 0;  // without area, or with a corner twice

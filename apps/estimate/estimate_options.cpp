@@ -28,7 +28,9 @@ void add_input_options(CLI::App& command, EstimateOptions& options) {
 }
 
 void add_estimator_options(CLI::App& command, EstimateOptions& options) {
-    command.add_option("--views", options.views, "View generation: raycast, raster, sphere or spheres")
+    command
+        .add_option("--views", options.views,
+                    "View generation: raycast, raster, raster_cells, raster_as_rays, sphere or spheres")
         ->check(CLI::IsMember(view_names()));
     command.add_option("--method", options.method, "default, or paper: the paper's formulas to the letter")
         ->check(CLI::IsMember(method_names()));

@@ -148,8 +148,8 @@ void check_row(TableKind kind, const Settings& settings, const fs::path& folder)
     const program::EstimatorSetup setup = estimator_setup(settings, 1);
     program::make_method(setup);
     program::make_solver(setup);
-    if (setup.view_samples && setup.views != "raster")
-        throw std::invalid_argument("view_samples belongs to the views raster, not " + setup.views);
+    if (setup.view_samples && !program::is_rasteriser(setup.views))
+        throw std::invalid_argument("view_samples belongs to rasterised views, not " + setup.views);
     const std::string scene = setting<std::string>(settings, "scene").value_or("part");
     if (starts_at_truth(settings) && scene != "part")
         throw std::invalid_argument("start truth: there is no true pose in the scene " + scene);

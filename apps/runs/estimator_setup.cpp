@@ -7,14 +7,23 @@
 #include "optim/ceres_pose_solver.hpp"
 #include "raycast/embree_view_generator.hpp"
 #include "raycast/nested_spheres_generator.hpp"
-#include "raycast/raster_view_generator.hpp"
 #include "raycast/sphere_view_generator.hpp"
 
 namespace nearpose::program {
 
 const std::vector<std::string>& view_names() {
-    static const std::vector<std::string> names = {"raycast", "raster", "sphere", "spheres"};
+    static const std::vector<std::string> names = {"raycast",        "raster", "raster_cells",
+                                                   "raster_as_rays", "sphere", "spheres"};
     return names;
+}
+
+bool is_rasteriser(const std::string& views) {
+    return views == "raster" || views == "raster_cells" || views == "raster_as_rays";
+}
+
+RasterBuffer raster_buffer(const std::string& views) {
+    if (views == "raster_cells") return RasterBuffer::kCells;
+    return views == "raster_as_rays" ? RasterBuffer::kAsRays : RasterBuffer::kSplats;
 }
 
 const std::vector<std::string>& method_names() {
@@ -35,16 +44,18 @@ const std::vector<std::string>& parts_of_method() {
 }
 
 std::shared_ptr<const ViewGenerator> make_view_generator(const EstimatorSetup& setup, const Mesh& mesh) {
-    if (setup.view_samples && setup.views != "raster") {
-        throw std::invalid_argument("samples of the surface belong to the views raster, not " + setup.views);
+    if (setup.view_samples && !is_rasteriser(setup.views)) {
+        throw std::invalid_argument("samples of the surface belong to rasterised views, not " + setup.views);
     }
     if (setup.views == "raycast") return std::make_shared<EmbreeViewGenerator>(mesh);
     if (setup.views == "sphere") return std::make_shared<SphereViewGenerator>(mesh);
     if (setup.views == "spheres") return std::make_shared<NestedSpheresGenerator>(mesh, nested_spheres());
-    if (setup.views != "raster") {
-        throw std::invalid_argument("views '" + setup.views + "': take raycast, raster, sphere or spheres");
+    if (!is_rasteriser(setup.views)) {
+        throw std::invalid_argument("views '" + setup.views +
+                                    "': take raycast, raster, raster_cells, raster_as_rays, sphere or spheres");
     }
     RasterOptions options;
+    options.buffer = raster_buffer(setup.views);
     if (setup.view_samples) options.num_samples = *setup.view_samples;
     check_option("samples of the surface", options.num_samples, 1, 1e8);
     return std::make_shared<RasterViewGenerator>(mesh, options);

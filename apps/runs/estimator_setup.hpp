@@ -12,12 +12,18 @@
 #include "core/pose_solver.hpp"
 #include "core/view_generator.hpp"
 #include "raycast/mesh.hpp"
+#include "raycast/raster_view_generator.hpp"
 
 namespace nearpose::program {
 
-// "raycast": rays of the real camera against the mesh; "raster": the paper's rasteriser of surface samples; "sphere": a
-// store of views from a sphere around the object; "spheres": from spheres of several radii.
+// "raycast": rays of the real camera against the mesh; "raster": the paper's rasteriser of surface samples, which hide
+// each other as splats; "raster_cells": the same on a depth buffer with cells of the samples' size; "raster_as_rays":
+// on one as fine as the view, whatever the samples; "sphere": a store of views from a sphere around the object;
+// "spheres": from spheres of several radii.
 const std::vector<std::string>& view_names();
+// Whether views of this name are of samples of the surface, and the depth buffer of those that are.
+bool is_rasteriser(const std::string& views);
+RasterBuffer raster_buffer(const std::string& views);
 // "default" and "paper".
 const std::vector<std::string>& method_names();
 // "point": point to point; "plane": point to plane.
@@ -55,7 +61,7 @@ struct EstimatorSetup {
                            // refinement of modes, which is nothing but solves
     // One part of the default method left out, for an ablation; "nothing": none. See parts_of_method().
     std::string without = "nothing";
-    std::optional<int> view_samples;  // of the surface; "raster" alone
+    std::optional<int> view_samples;  // of the surface; the rasterisers' alone
 
     Symmetries symmetries;  // of the part
     Tolerance tolerance;    // of the verdict

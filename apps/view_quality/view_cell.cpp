@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "apps/runs/estimator_setup.hpp"
@@ -14,31 +13,12 @@
 #include "raycast/sphere_view_generator.hpp"
 
 namespace nearpose::compare {
-namespace {
-
-// Area of all triangles, or of all discs of a cloud.
-double area_of(const Mesh& mesh) {
-    if (mesh.is_cloud()) {
-        const double disc_m2 = std::numbers::pi * static_cast<double>(mesh.disc_radius_m * mesh.disc_radius_m);
-        return disc_m2 * static_cast<double>(mesh.vertices_in_object.size());
-    }
-    double doubled = 0.0;
-    for (const auto& triangle : mesh.triangles) {
-        const auto corner = [&](int k) -> Eigen::Vector3d {
-            return mesh.vertices_in_object[static_cast<std::size_t>(triangle[static_cast<std::size_t>(k)])]
-                .cast<double>();
-        };
-        doubled += (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
-    }
-    return 0.5 * doubled;
-}
-
-}  // namespace
 
 void validate(const ViewCell& cell) {
     if (std::find(program::view_names().begin(), program::view_names().end(), cell.views) ==
         program::view_names().end()) {
-        throw std::invalid_argument("views '" + cell.views + "': take raycast, raster, sphere or spheres");
+        throw std::invalid_argument("views '" + cell.views +
+                                    "': take raycast, raster, raster_cells, raster_as_rays, sphere or spheres");
     }
     check_option("view_samples", cell.view_samples, 1, 1e7);
     check_option("distance_mm", cell.distance_mm, 10.0, 1e5);
@@ -49,7 +29,11 @@ void validate(const ViewCell& cell) {
 }
 
 ViewBench::ViewBench(const Mesh& mesh, const simulate::Part& part, const PinholeCamera& image_camera)
-    : mesh_(clean(mesh, "mesh")), part_(part), image_camera_(image_camera), truth_(mesh_), area_m2_(area_of(mesh_)) {
+    : mesh_(clean(mesh, "mesh")),
+      part_(part),
+      image_camera_(image_camera),
+      truth_(mesh_),
+      area_m2_(surface_area_m2(mesh_)) {
     // As recordings of the sweep scenario do, so that seeds mean the same lines of sight.
     if (part_.surface_points_in_object_m.empty()) {
         part_.surface_points_in_object_m = simulate::surface_points_from_above(mesh_);
@@ -70,8 +54,9 @@ std::shared_ptr<const ViewGenerator> ViewBench::make_generator(const ViewCell& c
     const auto sphere = [&](double radius) {
         return SphereOptions{cell.viewpoints, radius, sphere_image_size(cell.view_samples, radius)};
     };
-    if (cell.views == "raster") {
-        return std::make_shared<RasterViewGenerator>(mesh_, RasterOptions{cell.view_samples, 1});
+    if (program::is_rasteriser(cell.views)) {
+        return std::make_shared<RasterViewGenerator>(
+            mesh_, RasterOptions{cell.view_samples, 1, program::raster_buffer(cell.views)});
     }
     if (cell.views == "sphere") {
         return std::make_shared<SphereViewGenerator>(mesh_, sphere(cell.sphere_radius_diameters));

@@ -1,4 +1,4 @@
-// The three view generators against closed forms and against each other.
+// The view generators against closed forms and against each other.
 #include <limits>
 #include <memory>
 #include <set>
@@ -16,7 +16,9 @@ const Eigen::Vector3d kHalf(0.05, 0.03, 0.08);  // of the box [m]
 std::vector<std::unique_ptr<ViewGenerator>> all_generators(const Mesh& mesh) {
     std::vector<std::unique_ptr<ViewGenerator>> generators;
     generators.push_back(std::make_unique<EmbreeViewGenerator>(mesh));
-    generators.push_back(std::make_unique<RasterViewGenerator>(mesh));
+    for (const RasterBuffer buffer : {RasterBuffer::kSplats, RasterBuffer::kCells, RasterBuffer::kAsRays}) {
+        generators.push_back(std::make_unique<RasterViewGenerator>(mesh, RasterOptions{20000, 1, buffer}));
+    }
     generators.push_back(std::make_unique<SphereViewGenerator>(mesh, SphereOptions{100, 2.0, 64}));
     return generators;
 }
@@ -27,7 +29,7 @@ double distance_to_box_surface(const Eigen::Vector3f& point) {
 }
 
 class EachGenerator : public testing::TestWithParam<std::size_t> {};
-INSTANTIATE_TEST_SUITE_P(RayRasterSphere, EachGenerator, testing::Values(0U, 1U, 2U));
+INSTANTIATE_TEST_SUITE_P(RayRastersSphere, EachGenerator, testing::Values(0U, 1U, 2U, 3U, 4U));
 
 TEST_P(EachGenerator, KeepsTheLawsOfAView) {
     const auto generator = std::move(all_generators(make_box(kHalf.cast<float>()))[GetParam()]);

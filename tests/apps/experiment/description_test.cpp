@@ -104,7 +104,7 @@ TEST(Description, SaysWhatDoesNotGoTogether) {
         expect_error([&] { described("[" + row + "]"); }, {"tiny.json", "table first", "row \"", part});
     };
     refuses(R"({"overlap": false})", "overlap belongs to the method paper");
-    refuses(R"({"view_samples": 100})", "view_samples belongs to the views raster");
+    refuses(R"({"view_samples": 100})", "view_samples belongs to rasterised views");
     refuses(R"({"rounds": 0})", "rounds");
     refuses(R"({"gradient": false, "rounds": 2})", "gradient step, which is off");
     refuses(R"({"scenario": "piston", "occlusion": 0.3})", "piston");

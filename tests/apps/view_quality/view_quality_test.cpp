@@ -114,7 +114,7 @@ double distance_to_seen(const Eigen::Vector3f& point) {
 TEST(ViewQuality, LeaksThroughASparseFrontAreCounted) {
     const Mesh plates = two_plates();
     const Pose pose = at_distance(kFrontDepth);
-    const RasterViewGenerator raster(plates, {2000, 4});
+    const RasterViewGenerator raster(plates, {2000, 4, RasterBuffer::kAsRays});
     const ViewQuality quality = quality_of(raster, plates, pose);
 
     // The same grid, by hand: the back plate is what the part shows at most.
