@@ -47,6 +47,7 @@ void validate(const FilterOptions& options) {
 }
 
 void validate(const PixelCostOptions& options) {
+    check_option("pixel_cost.deep_sigmas", options.deep_sigmas, 0.0, 1e3);
     check_option("pixel_cost.truncation_sigmas", options.truncation_sigmas, 0.1, 100.0);
     check_option("pixel_cost.free_space_cost", options.free_space_cost, 1.0, 100.0);
     check_option("pixel_cost.occluded_cost", options.occluded_cost, 0.0, 1.0);

@@ -27,10 +27,14 @@ double negative_log_likelihood(double overlap_scaled_mse_m2, double sensor_sigma
 
 namespace {
 
+// How deep in free space: 0 up to `deep_m` before the measured surface, 1 from twice that on. 0 where nothing is deep.
+double deep_share(double depth_m, double deep_m) {
+    return deep_m > 0.0 ? std::clamp(depth_m / deep_m - 1.0, 0.0, 1.0) : 0.0;
+}
+
 // The cost of model before the measured surface by `depth_m`, where nothing is segmented.
 double free_space_cost(double depth_m, const PixelCostOptions& options) {
-    if (!(options.free_space_depth_m > 0.0)) return 1.0;
-    return 1.0 + (options.free_space_cost - 1.0) * std::clamp(depth_m / options.free_space_depth_m - 1.0, 0.0, 1.0);
+    return 1.0 + (options.free_space_cost - 1.0) * deep_share(depth_m, options.free_space_depth_m);
 }
 
 // A sample of the view in camera coordinates [m].
@@ -121,6 +125,10 @@ class PixelCostSum {
     PixelCost total() const;
 
   private:
+    // From which depth on a contradiction is deep.
+    double deep_m(double sigma_m) const {
+        return std::max(options_.free_space_depth_m, options_.deep_sigmas * sigma_m);
+    }
     double cost_of(double in_front_m, double residual_m, double sigma_m, PixelState state, double weight);
     void judge_edge(const Hit& hit, double weight, double cost);
 
@@ -143,12 +151,19 @@ void PixelCostSum::add(const Hit& hit) {
     const double in_front_m = observed_.depth_m[hit.index] - hit.point.z();
     candidates_covered_ += state == PixelState::kCandidate;
     ++counts_.model_rays;
-    const int agreeing_before = counts_.agreeing;
+    const int agreeing = counts_.agreeing, contradicted = counts_.contradicted;
+    const double deep = counts_.deep;
     const double weight = observed_.weight(hit.index);
     covered_weight_ += weight;
     const double cost = cost_of(in_front_m, in_front_m * cosine, sigma_m, state, weight);
     sum_ += cost;
-    if (options_.with_outline && counts_.agreeing != agreeing_before) judge_edge(hit, weight, cost);
+    if (options_.with_outline && counts_.agreeing > agreeing) judge_edge(hit, weight, cost);
+    if (observed_.at_step.empty() || !observed_.at_step[hit.index]) return;
+    constexpr double kSurest = 0.98;
+    const double mixed = std::min(kSurest, observed_.mixes_steps);
+    counts_.mixed_agreeing += mixed * (counts_.agreeing - agreeing);
+    counts_.mixed_contradicted += mixed * (counts_.contradicted - contradicted);
+    counts_.deep -= mixed * (counts_.deep - deep);
 }
 
 // The cost of one ray that meets the model, and its count.
@@ -158,6 +173,7 @@ double PixelCostSum::cost_of(double in_front_m, double residual_m, double sigma_
     if (r > 1.0) {
         ++counts_.free_space_violations;
         ++counts_.contradicted;
+        counts_.deep += deep_share(in_front_m, deep_m(sigma_m));
         return segmented ? 1.0 : free_space_cost(in_front_m, options_);
     }
     if (r < -1.0) {

@@ -42,6 +42,8 @@ struct PixelCostOptions {
     double outline_sigma_m = 0.001;    // how far the model's surface may be off there, beside the sensor's noise
     double outline_gate_sigmas = 3.0;  // a point nearer to the tangent plane lies in it
     int outline_steps = 2;  // grid steps to the point that is tested: the pixel beside an edge is often a mixed one
+    // A contradiction is deep from free_space_depth_m on, and from so many sigmas: no noise explains it.
+    double deep_sigmas = 8.0;
     double independent_rays = 40.0;  // neighbouring rays share errors of the sensor: so many count as independent
 };
 
@@ -60,14 +62,29 @@ struct PixelCost {
     int occluded = 0;               // model behind the measured surface
     int off_mask = 0;               // model on the measured surface, where the mask says that it is background
     int contradicted = 0;           // free-space violations, and model behind what the mask says is the object
-    int outline = 0;                // agreeing rays at the model's outline where something is measured beyond
-    int coplanar = 0;               // of them those where the measured surface goes on in the model's tangent plane
+    // Rays at depth steps that the sensor mixes, of those that agree and of those that contradict. Each counts as much
+    // as it is sure that the sensor mixes (ObservedGrid::mixes_steps), and never quite 1: where there are steps
+    // everywhere, they alone must tell.
+    double mixed_agreeing = 0.0;
+    double mixed_contradicted = 0.0;
+    double deep = 0.0;  // what contradictions deep in free space count beyond 1
+    int outline = 0;    // agreeing rays at the model's outline where something is measured beyond
+    int coplanar = 0;   // of them those where the measured surface goes on in the model's tangent plane
 
     // Share of the model's rays that agree with the measured depth, in 0..1.
     double support() const { return model_rays > 0 ? static_cast<double>(agreeing) / model_rays : 0.0; }
     // Inlier ratio: share of the rays that agree among those that agree or contradict, in 0..1. Occluded rays do
     // neither.
-    double agreement() const { return agreeing > 0 ? static_cast<double>(agreeing) / (agreeing + contradicted) : 0.0; }
+    double inlier_ratio() const {
+        return agreeing > 0 ? static_cast<double>(agreeing) / (agreeing + contradicted) : 0.0;
+    }
+    // The same for a verdict: rays at depth steps that the sensor mixes hardly count, and contradictions deep in free
+    // space count twice.
+    double agreement() const {
+        const double agree = agreeing - mixed_agreeing;
+        const double contradict = contradicted - mixed_contradicted + deep;
+        return agree > 0.0 ? agree / (agree + contradict) : 0.0;
+    }
     // Intersection over union of the mask and the model's rays on the measured surface, in 0..1. 1 without a mask.
     double overlap() const {
         if (!segmented) return 1.0;

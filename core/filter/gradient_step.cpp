@@ -181,7 +181,7 @@ RefinedMode refine_mode(const Pose& camera_from_object, const StepContext& conte
         refined.cost = cost.cost;
         refined.support = cost.support();
         refined.gain = cost.gain;
-        refined.agreement = cost.agreement();
+        refined.inlier_ratio = cost.inlier_ratio();
         refined.log_evidence = log_evidence(cost, context.pixel_cost, options.rays_per_evidence);
     }
     refined.camera_from_object = at.camera_from_object;

@@ -84,7 +84,7 @@ struct RefinedMode {
     double cost = 0.0;          // the pixel cost
     double support = 0.0;       // share of the model's rays that agree with the measured depth
     double log_evidence = 0.0;  // of the image for this pose, up to a constant [nats]
-    double agreement = 0.0;     // share of the rays that say anything about the surface and agree with it
+    double inlier_ratio = 0.0;  // share of the rays that say anything about the surface and agree with it
     double gain = 0.0;          // as PixelCost::gain [grid pixels]
     StepCounts counts;
     StageSeconds seconds;

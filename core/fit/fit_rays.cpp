@@ -4,15 +4,18 @@
 #include <array>
 #include <cmath>
 
+#include "core/evidence/model_edges.hpp"
+
 namespace nearpose {
 namespace {
 
 // Neighbouring rays share the field's nodes, so their rows are first summed in a small matrix.
 class CellSum {
   public:
-    // The pose, the four nodes around and the depth's scale, the part's scale, the residual.
-    static constexpr int kUsed = 6 + 5 + 1 + 1;
-    static constexpr int kSize = 14;  // even, so that the compiler takes two numbers at a time
+    // The pose, the four nodes around and the depth's scale, the constant errors, the residual.
+    static constexpr int kUsed = 6 + 5 + kConstantErrors + 1;
+    static constexpr int kSize = 16;  // even, so that the compiler takes two numbers at a time
+    static_assert(kUsed <= kSize && kSize % 2 == 0);
     using Row = Eigen::Matrix<double, kSize, 1>;
 
     void add(const SensorField::Row& place, const Row& row, double weight, FitEquations& equations) {
@@ -23,7 +26,7 @@ class CellSum {
     void flush(FitEquations& equations) {
         std::array<Eigen::Index, kUsed> index{};
         for (int i = 0; i < kUsed; ++i)
-            index[i] = i < 6 ? i : 6 + (i < 11 ? unknowns_[i - 6] : equations.unknowns + i - (kUsed - 1));
+            index[i] = i < 6 ? i : 6 + (i < 11 ? unknowns_[i - 6] : equations.unknowns + i - 11);
         for (int j = 0; j < kUsed; ++j)
             for (int i = 0; i < kUsed; ++i) equations.sums(index[i], index[j]) += sum_(std::max(i, j), std::min(i, j));
         sum_.setZero();
@@ -112,13 +115,6 @@ struct PlaneInImage {
     }
 };
 
-// Of each ray of the grid, its index in the view; -1 where it meets nothing.
-std::vector<int> hits_on(const PixelGrid& grid, const View& view) {
-    std::vector<int> hit_at(static_cast<std::size_t>(grid.size()), -1);
-    for (std::size_t k = 0; k < view.size(); ++k) hit_at[view.pixels[k]] = static_cast<int>(k);
-    return hit_at;
-}
-
 // All that the rays of one linearisation share.
 class RayLineariser {
   public:
@@ -134,12 +130,17 @@ class RayLineariser {
           rotation_(at.camera_from_object.rotation_matrix()),
           object_from_camera_(rotation_.transpose()),
           camera_in_object_(-(object_from_camera_ * at.camera_from_object.translation)),
-          hit_at_(hits_on(observed_.grid, view)),
+          hit_at_(rays_on_grid(view, observed_.grid)),
           fine_m2_(sensor().systematic_fine_sigma_m * sensor().systematic_fine_sigma_m),
           field_m2_(sensor().systematic_sigma_m * sensor().systematic_sigma_m),
           extra_m2_(at.extra_sigma_m * at.extra_sigma_m),
           rays_per_fine_error_(rays_per_fine_error(sensor(), observed_.grid.stride)),
-          reach_pixels_(static_cast<int>(observed_.grid.stride * options.reach_spacings)) {}
+          reach_pixels_(static_cast<int>(observed_.grid.stride * options.reach_spacings)),
+          edge_sigma_factor_(1.0 + observation_.shared_noise() * (sensor().edge_sigma_factor - 1.0)),
+          at_step_(rays_at_steps(
+              view, observed_,
+              edge_sigma_factor_ > 1.0 ? static_cast<int>(std::ceil(sensor().edge_pixels / observed_.grid.stride)) : 0,
+              sensor().edge_step_sigmas)) {}
 
     RayFace face_of(std::size_t k) const;
     // Adds the k-th ray's row; nothing where no pixel around it lies on its face.
@@ -162,6 +163,8 @@ class RayLineariser {
     const double fine_m2_, field_m2_, extra_m2_;  // variances: the first two in depth, the last along the normal
     const double rays_per_fine_error_;
     const int reach_pixels_;
+    const double edge_sigma_factor_;
+    const std::vector<char> at_step_;
 };
 
 RayFace RayLineariser::face_of(std::size_t k) const {
@@ -210,14 +213,23 @@ void RayLineariser::add(std::size_t k, const RayFace& face, CellSum& cell, FitEq
     const double off_m = std::abs(measured.residual_m - slope * known_m);
     const double robust =
         std::min(1.0, options_.huber_sigmas * std::sqrt(sigma_m2 + extra_m2_) / std::max(off_m, 1e-12));
-    CellSum::Row row;
-    row << (camera_in_object_ + face.model_m * (object_from_camera_ * camera.ray(face.u, face.v)) - centre_in_object_)
-               .cross(face.normal),
+    const Eigen::Vector3d ray = camera.ray(face.u, face.v);
+    const Eigen::Vector3d& normal = face.normal_in_camera;
+    CellSum::Row row = CellSum::Row::Zero();
+    row.head<CellSum::kUsed>()
+        << (camera_in_object_ + face.model_m * (object_from_camera_ * ray) - centre_in_object_).cross(face.normal),
         face.normal, slope * Eigen::Map<const Eigen::Matrix<double, 5, 1>>(place.factors.data()),
-        face.normal.dot(view_.points_in_object[k].cast<double>() - centre_in_object_), measured.residual_m, 0.0;
-    const double variance_m2 = sigma_m2 + (rays_per_fine_error_ - 1.0) * fine_along_normal_m2;
+        // The part is larger; the focal length and the principal point are larger, so the measured point lies nearer to
+        // the axis, further to the left, higher up.
+        face.normal.dot(view_.points_in_object[k].cast<double>() - centre_in_object_),
+        -measured_m * (normal.x() * ray.x() + normal.y() * ray.y()), -measured_m * normal.x() / camera.fx,
+        -measured_m * normal.y() / camera.fy, measured.residual_m;
+    const bool mixed = at_step_[k] != 0;
+    const double edge_variance_factor = mixed ? edge_sigma_factor_ * edge_sigma_factor_ : 1.0;
+    const double variance_m2 = edge_variance_factor * (sigma_m2 + (rays_per_fine_error_ - 1.0) * fine_along_normal_m2);
     cell.add(place, row, robust / variance_m2, equations);
-    equations.scaled_residuals.push_back(off_m / std::sqrt(sigma_m2));
+    ++equations.rays;
+    if (!mixed) equations.scaled_residuals.push_back(off_m / std::sqrt(sigma_m2));
 }
 
 }  // namespace
@@ -225,7 +237,7 @@ void RayLineariser::add(std::size_t k, const RayFace& face, CellSum& cell, FitEq
 FitEquations linearise(const Linearisation& at, const View& view, const SensorField& field, const StepContext& context,
                        const FitRayOptions& options) {
     const RayLineariser rays(at, view, field, context, options);
-    FitEquations equations(field.num_unknowns() + 1);
+    FitEquations equations(field.num_unknowns());
     equations.scaled_residuals.reserve(view.size());
     CellSum cell;
     for (std::size_t k = 0; k < view.size(); ++k) {

@@ -27,16 +27,23 @@ struct Linearisation {
     double extra_sigma_m;    // how far off the pose may still be; widens the gate and the bound of an outlier
 };
 
+// Errors that are the same in every frame and can hardly be told from the pose: the part's scale against its CAD, about
+// its centre [1]; the focal length [1]; the principal point [pixels].
+inline constexpr int kConstantErrors = 4;
+
 // Normal equations at the pose and at zero errors. The unknowns are the twist about the model's centre, the field's
-// unknowns, and the part's scale about its centre against its CAD.
+// unknowns, and the constant errors.
 struct FitEquations {
-    explicit FitEquations(Eigen::Index unknowns_beside_pose)
-        : sums(Eigen::MatrixXd::Zero(6 + unknowns_beside_pose + 1, 6 + unknowns_beside_pose + 1)),
-          unknowns(unknowns_beside_pose) {}
+    explicit FitEquations(Eigen::Index field_unknowns)
+        : sums(Eigen::MatrixXd::Zero(6 + field_unknowns + kConstantErrors + 1,
+                                     6 + field_unknowns + kConstantErrors + 1)),
+          unknowns(field_unknowns) {}
 
     Eigen::MatrixXd sums;  // of weight * row * row^T, row = (derivatives, residual)
     Eigen::Index unknowns;
-    std::vector<double> scaled_residuals;  // |residual| / sigma of each ray, after the known errors
+    int rays = 0;  // that take part
+    // |residual| / sigma of each ray that is away from depth steps, after the known errors
+    std::vector<double> scaled_residuals;
 };
 
 // Each ray keeps the face that it met in `view`, which was cast at a pose near by: only the face's plane moves with the

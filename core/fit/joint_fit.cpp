@@ -37,9 +37,9 @@ struct Problem {
     Eigen::Index active_nodes = 0;     // of the field; they follow the pose
     Eigen::MatrixXd information;       // of the rays, over the active ones
     Eigen::VectorXd gradient;
-    Eigen::VectorXd part_scale_gradient;  // the gradient of a part that is twice as large as its CAD
-    Eigen::VectorXd variances;            // prior, of the active unknowns
-    Eigen::VectorXd fitted_variances;     // the smaller ones with which they take part in the fit
+    Eigen::MatrixXd constant_gradients;  // a column for each constant error of size 1: what the fit takes it for
+    Eigen::VectorXd variances;           // prior, of the active unknowns
+    Eigen::VectorXd fitted_variances;    // the smaller ones with which they take part in the fit
 };
 
 // The sensor's errors as the fit may use them. The larger the residuals that are no error of the sensor, the less of
@@ -70,15 +70,16 @@ void set_prior(Problem& problem, const UnitWeight& weight, const SensorField& fi
 Problem problem_of(const FitEquations& equations, const UnitWeight& weight, const SensorField& field,
                    const StepContext& context, const FitOptions& options) {
     Problem problem;
-    const Eigen::Index part_scale = 6 + field.num_unknowns(), residual = part_scale + 1;
-    for (Eigen::Index i = 0; i < part_scale; ++i) {
+    const Eigen::Index constants = 6 + field.num_unknowns(), residual = constants + kConstantErrors;
+    for (Eigen::Index i = 0; i < constants; ++i) {
         if (i >= 6 && !(equations.sums(i, i) > 0.0)) continue;
         problem.active.push_back(i);
         problem.active_nodes += i >= 6 && i < 6 + field.num_nodes();
     }
     problem.information = equations.sums(problem.active, problem.active) / weight.variance();
     problem.gradient = equations.sums(problem.active, residual) / weight.variance();
-    problem.part_scale_gradient = equations.sums(problem.active, part_scale) / weight.variance();
+    problem.constant_gradients =
+        equations.sums(problem.active, Eigen::seqN(constants, kConstantErrors)) / weight.variance();
     const double turn_rad = options.prior_rotation_rad;
     const double shift_m = options.prior_translation_diameters * context.views.extent().diameter_m();
     problem.information.diagonal().head<3>().array() += 1.0 / (turn_rad * turn_rad);
@@ -93,12 +94,17 @@ Eigen::LLT<Eigen::MatrixXd> factor_of(const Problem& problem) {
     return matrix.llt();
 }
 
-// The sensor's field may be larger than its model says; the image shows by how much.
-Problem with_larger_field(Problem problem, const GroupVarianceOptions& options) {
+// The sensor's field may be larger or smaller than its model says; the image shows by how much. Where it is smaller,
+// the sensor is a better one, and its scale is believed as much more. A smaller one is believed as far as nodes tell.
+Problem with_seen_field(Problem problem, const GroupVarianceOptions& options) {
     GroupProblem group{problem.information, problem.gradient, Eigen::VectorXd(problem.gradient.size()), 6,
                        problem.active_nodes};
     group.prior_variances << Eigen::VectorXd::Constant(6, std::numeric_limits<double>::infinity()), problem.variances;
-    problem.variances.head(problem.active_nodes) *= std::max(1.0, group_variance_factor(group, options));
+    const double seen = group_variance_factor(group, options);
+    const auto nodes = static_cast<double>(problem.active_nodes);
+    const double factor = seen > 1.0 ? seen : (options.prior_count + nodes * seen) / (options.prior_count + nodes);
+    problem.variances.head(problem.active_nodes) *= factor;
+    problem.variances.tail(problem.variances.size() - problem.active_nodes) *= std::min(1.0, factor);
     return problem;
 }
 
@@ -114,11 +120,16 @@ Matrix6d covariance_of(const Problem& problem, const UnitWeight& weight, const E
     return 0.5 * (covariance + covariance.transpose());
 }
 
-// The part's scale can hardly be told from its distance, so it is not fitted: its effect on the pose is propagated.
-Matrix6d part_scale_covariance(const Problem& problem, const Eigen::LLT<Eigen::MatrixXd>& factor,
-                               const FitOptions& options) {
-    const Twist shift = options.part_scale_sigma * factor.solve(problem.part_scale_gradient).head<6>();
-    return shift * shift.transpose();
+// Constant errors can hardly be told from the pose, so they are not fitted: their effect on it is propagated.
+Matrix6d constant_covariance_of(const Problem& problem, const Eigen::LLT<Eigen::MatrixXd>& factor,
+                                const Observation& observation, const FitOptions& options) {
+    const SensorModel& sensor = observation.sensor();
+    const double shift_pixels = observation.shared_noise() * sensor.image_shift_sigma_pixels;
+    const Eigen::Vector4d sigmas(options.part_scale_sigma, sensor.focal_length_sigma, shift_pixels, shift_pixels);
+    static_assert(kConstantErrors == 4);
+    const Eigen::Matrix<double, 6, kConstantErrors> steps =
+        factor.solve(problem.constant_gradients).topRows<6>() * sigmas.asDiagonal();
+    return steps * steps.transpose();
 }
 
 }  // namespace
@@ -139,6 +150,7 @@ void validate(const FitOptions& options) {
     check_option("fit.rays.coplanar_sine", options.rays.coplanar_sine, 0.0, 1.0);
     check_option("fit.field.spacing_lengths", options.field.spacing_lengths, 0.1, 1e3);
     check_option("fit.field.max_spacings", options.field.max_spacings, 1.0, 1e3);
+    check_option("fit.field_variance.prior_count", options.field_variance.prior_count, 0.0, 1e6);
     check_option("fit.field_variance.steps", options.field_variance.steps, 0, 1000);
     check_option("fit.field_variance.min_count", options.field_variance.min_count, 1, 1e6);
 }
@@ -171,10 +183,10 @@ JointFit fit_jointly(const Pose& start, const StepContext& context, const FitOpt
                 at.errors[problem.active[i] - 6] = step[static_cast<Eigen::Index>(i)];
         }
         if (last) {
-            fit.covariance = covariance_of(with_larger_field(problem, options.field_variance), weight, factor);
-            fit.constant_covariance = part_scale_covariance(problem, factor, options);
+            fit.covariance = covariance_of(with_seen_field(problem, options.field_variance), weight, factor);
+            fit.constant_covariance = constant_covariance_of(problem, factor, context.observation, options);
         }
-        fit.pairs = static_cast<int>(equations.scaled_residuals.size());
+        fit.pairs = equations.rays;
         if (last) break;
         if (shift_m > options.same_faces_sigmas * sigma_m) view = cast(at.camera_from_object, context);
     }
@@ -188,7 +200,7 @@ Matrix6d covariance_at(const Pose& camera_from_object, const StepContext& contex
     const View view = cast(camera_from_object, context);
     const Problem problem = problem_of(linearise(at, view, field, context, options.rays), {}, field, context, options);
     const Eigen::LLT<Eigen::MatrixXd> factor = factor_of(problem);
-    return covariance_of(problem, {}, factor) + part_scale_covariance(problem, factor, options);
+    return covariance_of(problem, {}, factor) + constant_covariance_of(problem, factor, context.observation, options);
 }
 
 Matrix6d about_origin(const Matrix6d& covariance_about_centre, const Eigen::Vector3d& centre_in_object) {

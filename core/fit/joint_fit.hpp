@@ -43,8 +43,8 @@ struct JointFit {
     Pose camera_from_object;
     Matrix6d covariance = Matrix6d::Zero();
     int pairs = 0;  // rays that took part
-    // To be added: the covariance of errors that are the same in every frame, which no number of frames averages out.
-    // It comes from the part being larger or smaller than its CAD.
+    // To be added: the covariance of errors that are the same in every frame, which no number of frames averages out:
+    // of the part's scale against its CAD, of the camera's focal length and principal point.
     Matrix6d constant_covariance = Matrix6d::Zero();
 };
 

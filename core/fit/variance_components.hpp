@@ -21,8 +21,9 @@ struct GroupProblem {
 };
 
 struct GroupVarianceOptions {
-    int steps = 4;      // of expectation maximisation; they go most of the way
-    int min_count = 3;  // smaller groups say next to nothing about their variance
+    int steps = 16;            // of expectation maximisation; they go most of the way
+    int min_count = 3;         // smaller groups say next to nothing about their variance
+    double prior_count = 2.0;  // against a smaller variance the sensor's model counts as so many of the group
 };
 
 // The factor on the group's prior variance under which the data are most likely. Found by expectation maximisation

@@ -49,11 +49,7 @@ int stride_that_the_cloud_fills(const std::vector<Eigen::Vector3f>& points, cons
 void validate(const ObservationOptions& options) {
     validate(options.sensor);
     check_option("observation.max_points", options.max_points, 1, 1e7);
-    check_option("observation.noise.reach_pixels", options.noise.reach_pixels, 1, 1e4);
-    check_option("observation.noise.samples", options.noise.samples, 1, 1e9);
-    check_option("observation.noise.min_samples", options.noise.min_samples, 1, 1e9);
-    check_option("observation.noise.least_factor", options.noise.least_factor, 0.0, 1e3);
-    check_option("observation.noise.most_factor", options.noise.most_factor, options.noise.least_factor, 1e3);
+    validate(options.noise);
     check_option("observation.min_filled_share", options.min_filled_share, 0.0, 1.0);
 }
 
@@ -77,8 +73,9 @@ Observation make_observation(DepthImage depth, const PinholeCamera& camera, cons
     observation.image_ = organise(std::move(depth.depth_m), mask, options.sensor);
     observation.candidates_ = find_candidates(observation.image_, camera);
     observation.cloud_ = sample_candidates(observation.image_, camera, observation.candidates_, options.max_points);
-    observation.noise_factor_ =
-        measured_noise_factor(observation.image_, camera, observation.candidates_, options.sensor, options.noise);
+    observation.noise_ = {
+        measured_noise_factor(observation.image_, camera, observation.candidates_, options.sensor, options.noise),
+        measured_shared_noise(observation.image_, camera, options.noise)};
     return observation;
 }
 

@@ -10,6 +10,7 @@
 #include "core/base/camera.hpp"
 #include "core/base/depth_image.hpp"
 #include "core/base/point_index.hpp"
+#include "core/observation/image_noise.hpp"
 #include "core/observation/organised_image.hpp"
 #include "core/observation/sensor_model.hpp"
 
@@ -43,9 +44,12 @@ class Observation {
 
     // How many times the sensor model's noise this image shows on smooth surfaces. The model is of the sensor, while
     // rain, light and dark surfaces change from image to image. 1 where too little is seen to measure it.
-    double noise_factor() const { return noise_factor_; }
+    double noise_factor() const { return noise_.factor; }
+    // Whether pixels that are some pixels apart share their noise, 0..1, as where a sensor gives one value for a
+    // window. 1 where it was not measured.
+    double shared_noise() const { return noise_.shared; }
     // Standard deviation of a pixel's depth in this image [m].
-    double sigma_m(double depth_m) const { return noise_factor_ * sensor_.sigma_m(depth_m); }
+    double sigma_m(double depth_m) const { return noise_.factor * sensor_.sigma_m(depth_m); }
 
     // An even subset of the candidates as a cloud, with unit normals towards the camera (zero where the neighbourhood
     // gives none).
@@ -76,7 +80,7 @@ class Observation {
     OrganisedImage image_;
     CandidateExtent candidates_;
     CandidateCloud cloud_;
-    double noise_factor_ = 1.0;
+    ImageNoise noise_;
     struct LazyIndex {
         std::once_flag once;
         std::optional<PointIndex> index;

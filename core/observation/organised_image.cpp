@@ -5,8 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/base/statistics.hpp"
-
 namespace nearpose {
 namespace {
 
@@ -138,28 +136,6 @@ CandidateCloud sample_candidates(const OrganisedImage& image, const PinholeCamer
     cloud.centroid_in_camera /= count;
     cloud.mean_distance_m = distances_m / count;
     return cloud;
-}
-
-double measured_noise_factor(const OrganisedImage& image, const PinholeCamera& camera,
-                             const CandidateExtent& candidates, const SensorModel& sensor,
-                             const NoiseOptions& options) {
-    const int reach = options.reach_pixels;
-    std::vector<double> ratios;
-    const int stride = std::max(1, static_cast<int>(std::sqrt(candidates.count / options.samples)));
-    for (int v = candidates.box.first_v; v < candidates.box.last_v; v += stride) {
-        for (int u = candidates.box.first_u + reach; u < candidates.box.last_u - reach; u += stride) {
-            const int pixel = v * camera.width + u;
-            bool usable = true;
-            for (const int other : {pixel - reach, pixel, pixel + reach})
-                usable = usable && image.states[other] == PixelState::kCandidate;
-            if (!usable) continue;
-            const double z_m = image.depth_m[pixel];
-            const double second = 1.0 / image.depth_m[pixel - reach] - 2.0 / z_m + 1.0 / image.depth_m[pixel + reach];
-            ratios.push_back(std::abs(second) * z_m * z_m / (std::sqrt(6.0) * sensor.sigma_m(z_m)));
-        }
-    }
-    if (ratios.empty() || ratios.size() < static_cast<std::size_t>(options.min_samples)) return 1.0;
-    return std::clamp(median(std::move(ratios)) / kMedianOfAbsoluteNormal, options.least_factor, options.most_factor);
 }
 
 }  // namespace nearpose

@@ -39,15 +39,6 @@ struct CandidateCloud {
     double mean_distance_m = 0.0;                                  // from the camera; 0 if empty
 };
 
-// How the noise of an image is measured, see measured_noise_factor.
-struct NoiseOptions {
-    int reach_pixels = 3;       // between the depths that are compared: direct neighbours share their noise
-    double samples = 3000.0;    // about so many candidates are looked at
-    int min_samples = 100;      // fewer do not tell: the factor is then 1
-    double least_factor = 0.5;  // bounds of the factor
-    double most_factor = 10.0;
-};
-
 // Takes over `depth_m`; depths that are not finite or out of the sensor's range become 0. Without a mask all measured
 // pixels are candidates.
 OrganisedImage organise(std::vector<float> depth_m, const std::optional<Mask>& mask, const SensorModel& sensor);
@@ -70,11 +61,5 @@ Eigen::Vector3f normal_at(const OrganisedImage& image, const PinholeCamera& came
 // At most about `max_points` candidates, on a grid of equal spacing in u and v.
 CandidateCloud sample_candidates(const OrganisedImage& image, const PinholeCamera& camera,
                                  const CandidateExtent& candidates, int max_points);
-
-// How many times the sensor model's noise the image shows. A plane's inverse depth is linear over the image, so its
-// second difference is noise alone, of variance 6 sigma^2 / z^4. The median over the candidates is robust against edges
-// and curved surfaces.
-double measured_noise_factor(const OrganisedImage& image, const PinholeCamera& camera,
-                             const CandidateExtent& candidates, const SensorModel& sensor, const NoiseOptions& options);
 
 }  // namespace nearpose

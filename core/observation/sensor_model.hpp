@@ -16,6 +16,15 @@ struct SensorModel {
     double systematic_length_pixels = 40.0;   // over which pixels share it [pixels of the image]
     double systematic_fine_sigma_m = 0.0005;  // of what is shared over a quarter of that length [m]
     double depth_scale_sigma = 0.003;         // of the relative error that all depths share
+    double focal_length_sigma = 0.001;        // of the calibration's relative error
+    // Of a shift of the whole image against its calibration: of the principal point, and of edges, which a sensor moves
+    // that gives one value for a window. Counts where neighbours share noise (Observation::shared_noise) [pixels].
+    double image_shift_sigma_pixels = 0.5;
+    // A sensor gives one value for a window of pixels. Within so many pixels of a depth step the window mixes two
+    // surfaces or prefers the nearer one: the noise there is larger by the factor. 1: edges are as sharp as all else.
+    double edge_pixels = 4.0;  // [pixels of the image]
+    double edge_sigma_factor = 3.2;
+    double edge_step_sigmas = 1.5;  // a smaller departure from the tangent plane is no step
     // By these fractions of their standard deviations the errors are free in the joint fit. Errors of the CAD and of
     // edges look like them, and a fit that may explain everything by the sensor follows the smallest features.
     double systematic_fitted = 0.5;

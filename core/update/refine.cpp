@@ -45,7 +45,7 @@ Situation gate_prediction(Situation situation, const Belief& predicted, const Fr
     const bool established = situation.phase == Phase::kConfirming || situation.phase == Phase::kTracking;
     if (!established || !(predicted.lock.accepted_evidence > 0.0)) return situation;
     const RefinedMode prediction = evaluate_prediction(predicted.tracked->camera_from_object, situation, frame, ledger);
-    const bool agrees = prediction.agreement >= frame.method().verification.min_agreement;
+    const bool agrees = prediction.inlier_ratio >= frame.method().verification.min_agreement;
     if (agrees) situation.prediction = prediction;
     situation.phase = phase_after_prediction(situation.phase, agrees);
     situation.plan = plan_of(situation.phase, frame.method(), agrees);

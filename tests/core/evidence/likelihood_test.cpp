@@ -243,5 +243,41 @@ TEST(Likelihood, LiesBetweenCertainAndIgnorant) {
                 0.5 * options.independent_rays * options.truncation_sigmas * options.truncation_sigmas * 0.1, 1e-12);
 }
 
+// Agreement of a plate of 100 rays, each of a kind, on a grid of its own.
+TEST(PixelCost, AgreementHardlyCountsRaysAtStepsAndCountsDeepContradictionsTwice) {
+    PixelCost cost;
+    cost.agreeing = 80;
+    cost.contradicted = 20;
+    EXPECT_DOUBLE_EQ(cost.agreement(), 0.8);
+    cost.mixed_agreeing = 40.0;
+    cost.mixed_contradicted = 18.0;
+    EXPECT_DOUBLE_EQ(cost.agreement(), 40.0 / 42.0);
+    EXPECT_DOUBLE_EQ(cost.inlier_ratio(), 0.8) << "that one counts all rays alike";
+    cost.deep = 2.0;
+    EXPECT_DOUBLE_EQ(cost.agreement(), 40.0 / 44.0);
+}
+
+TEST(PixelCost, ContradictionsDeepInFreeSpaceAreDeepAndShallowOnesAreNot) {
+    const Observation observation = observe_part(false);
+    PixelCostOptions options;
+    options.free_space_depth_m = 0.02;
+    const PixelCost shallow = cost_at(shifted(0, 0, -0.015), observation, options);
+    const PixelCost deep = cost_at(shifted(0, 0, -0.06), observation, options);
+    EXPECT_GT(shallow.contradicted, 100);
+    EXPECT_LT(shallow.deep, 0.05 * shallow.contradicted) << "towers stand before the wall";
+    EXPECT_GT(deep.deep, 0.5 * deep.contradicted * (1.0 - 0.98));
+    EXPECT_LE(deep.deep, deep.contradicted);
+}
+
+TEST(PixelCost, AtTheModelsStepsASensorThatMixesIsNotBelieved) {
+    const Observation observation = observe_part(true);  // noise-free, so it is taken for one that mixes
+    ASSERT_EQ(observation.shared_noise(), 1.0);
+    const PixelCost cost = cost_at(kTruth, observation);
+    EXPECT_GT(cost.mixed_agreeing, 0.1 * cost.agreeing);
+    EXPECT_LT(cost.mixed_agreeing, 0.9 * cost.agreeing);
+    EXPECT_EQ(cost.mixed_contradicted, 0.0);
+    EXPECT_EQ(cost.agreement(), 1.0);
+}
+
 }  // namespace
 }  // namespace nearpose

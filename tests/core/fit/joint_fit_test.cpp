@@ -151,6 +151,8 @@ TEST(JointFit, TheConstantCovarianceIsThatOfAPartLargerThanItsCad) {
     SensorModel sensor = sensor_of_test();
     sensor.systematic_sigma_m = 0.0;  // so that only the pose can explain the difference
     sensor.depth_scale_sigma = 0.0;
+    sensor.focal_length_sigma = 0.0;  // and the part's scale is the only constant error
+    sensor.image_shift_sigma_pixels = 0.0;
     const JointFit exact = fit(observe_exactly(kPart, sensor), kTruth);
     const JointFit larger = fit(observe_exactly(enlarged_part(kShare), sensor), kTruth);
     const Twist step = error_of(larger.camera_from_object) - error_of(exact.camera_from_object);
@@ -160,6 +162,37 @@ TEST(JointFit, TheConstantCovarianceIsThatOfAPartLargerThanItsCad) {
     const Eigen::Matrix3d of_translation = squared.bottomRightCorner<3, 3>();
     const Eigen::Matrix3d predicted = larger.constant_covariance.bottomRightCorner<3, 3>();
     EXPECT_LT((predicted - of_translation).norm(), 0.4 * of_translation.norm());
+}
+
+// The same law for the camera: what a fit with a wrong calibration is off by is one sigma of the constant covariance.
+TEST(JointFit, TheConstantCovarianceIsThatOfACameraThatDiffersFromItsCalibration) {
+    SensorModel sensor = sensor_of_test();
+    sensor.systematic_sigma_m = 0.0;
+    sensor.depth_scale_sigma = 0.0;
+    FitOptions options;
+    options.part_scale_sigma = 0.0;
+    const auto observe_with = [&](const PinholeCamera& calibration) {
+        Mask mask;
+        const DepthImage image = test::render(kPart, kTruth, kCamera, 0.9F, &mask);
+        ObservationOptions observed;
+        observed.sensor = sensor;
+        return make_observation(image, calibration, mask, observed);
+    };
+    const auto expect_step = [&](const PinholeCamera& calibration) {
+        const JointFit exact = fit(observe_with(kCamera), kTruth, options);
+        const JointFit wrong = fit(observe_with(calibration), kTruth, options);
+        const Twist step = error_of(wrong.camera_from_object) - error_of(exact.camera_from_object);
+        const Eigen::Matrix3d seen = step.tail<3>() * step.tail<3>().transpose();
+        const Eigen::Matrix3d predicted = exact.constant_covariance.bottomRightCorner<3, 3>();
+        EXPECT_GT(step.tail<3>().norm(), 5e-5);
+        EXPECT_LT((predicted - seen).norm(), 0.4 * seen.norm()) << predicted << "\n\n" << seen;
+    };
+    PinholeCamera longer = kCamera;
+    longer.fx *= 1.002;
+    longer.fy *= 1.002;
+    sensor.focal_length_sigma = 0.002;
+    sensor.image_shift_sigma_pixels = 0.0;
+    expect_step(longer);
 }
 
 TEST(JointFit, AFieldLargerThanTheSensorModelsWidensTheCovariance) {
@@ -191,7 +224,10 @@ TEST(JointFit, APartThatDiffersFromItsCadIsTrustedLess) {
 }
 
 TEST(JointFit, ThePartsScaleIsAsUncertainAsTheOptionsSay) {
-    const Observation observation = observe_exactly(kPart, sensor_of_test());
+    SensorModel sensor = sensor_of_test();
+    sensor.focal_length_sigma = 0.0;
+    sensor.image_shift_sigma_pixels = 0.0;
+    const Observation observation = observe_exactly(kPart, sensor);
     FitOptions options;
     const Matrix6d once = fit(observation, kTruth, options).constant_covariance;
     options.part_scale_sigma *= 2.0;

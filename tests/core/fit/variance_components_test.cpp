@@ -38,7 +38,7 @@ GroupProblem draw_problem(double true_factor, std::uint64_t seed) {
 // Expectation maximisation as it is defined, with the whole matrix inverted.
 double naive_factor(const GroupProblem& problem) {
     double factor = 1.0;
-    for (int step = 0; step < 4; ++step) {
+    for (int step = 0; step < GroupVarianceOptions{}.steps; ++step) {
         Eigen::VectorXd variances = problem.prior_variances;
         variances.segment(problem.first, problem.count) *= factor;
         Eigen::MatrixXd matrix = problem.information;
