@@ -13,7 +13,8 @@ namespace {
 class CellSum {
   public:
     // The pose, the four nodes around and the depth's scale, the constant errors, the residual.
-    static constexpr int kUsed = 6 + 5 + kConstantErrors + 1;
+    static constexpr int kBeforeConstants = 6 + 5;
+    static constexpr int kUsed = kBeforeConstants + kConstantErrors + 1;
     static constexpr int kSize = 16;  // even, so that the compiler takes two numbers at a time
     static_assert(kUsed <= kSize && kSize % 2 == 0);
     using Row = Eigen::Matrix<double, kSize, 1>;
@@ -26,7 +27,8 @@ class CellSum {
     void flush(FitEquations& equations) {
         std::array<Eigen::Index, kUsed> index{};
         for (int i = 0; i < kUsed; ++i)
-            index[i] = i < 6 ? i : 6 + (i < 11 ? unknowns_[i - 6] : equations.unknowns + i - 11);
+            index[i] =
+                i < 6 ? i : 6 + (i < kBeforeConstants ? unknowns_[i - 6] : equations.unknowns + i - kBeforeConstants);
         for (int j = 0; j < kUsed; ++j)
             for (int i = 0; i < kUsed; ++i) equations.sums(index[i], index[j]) += sum_(std::max(i, j), std::min(i, j));
         sum_.setZero();

@@ -43,7 +43,8 @@ ObservedGrid observe(const Observation& observation, const PixelGrid& grid) {
         observed.states.push_back(observation.states()[pixel]);
         observed.depth_m.push_back(depth_m);
         observed.sigma_m.push_back(static_cast<float>(observation.sigma_m(depth_m)));
-        observed.at_step.push_back(depth_m > 0.0F && is_at_step(observation, pixel, reach));
+        observed.at_step.push_back(observed.mixes_steps > 0.0 && depth_m > 0.0F &&
+                                   is_at_step(observation, pixel, reach));
         observed.num_candidates += observation.states()[pixel] == PixelState::kCandidate;
     }
     return observed;

@@ -18,7 +18,7 @@ struct ObservedGrid {
     std::vector<float> depth_m;      // 0 where kNoDepth
     std::vector<float> sigma_m;      // of this image at that depth
     double mixes_steps = 0.0;        // how surely the sensor mixes the surfaces at a depth step (shared_noise), 0..1
-    std::vector<char> at_step;       // 1 where a depth step or a hole lies within the sensor's edge_pixels
+    std::vector<char> at_step;       // 1 where the sensor mixes a depth step or hole within edge_pixels
     std::vector<float> weights;      // of the pixels' evidence for a pose, in 0..1; empty: 1 everywhere
 
     double weight(int index) const { return weights.empty() ? 1.0 : static_cast<double>(weights[index]); }
