@@ -75,6 +75,7 @@ void validate(const PreselectionOptions& options) {
     check_option("preselection.rays", options.rays, 1, 1e7);
     check_option("preselection.rounds", options.rounds, 0, 100);
     check_option("preselection.kept", options.kept, 1, 1e5);
+    check_option("preselection.presence_rays", options.presence_rays, 0, 1e7);
     check_option("preselection.disambiguated", options.disambiguated, 0, 1000);
 }
 
@@ -82,6 +83,11 @@ void validate(const ChoiceOptions& options) {
     check_option("choice.challenge_nats", options.challenge_nats, 0.0, 1e6);
     check_option("choice.min_support", options.min_support, 0.0, 1.0);
     check_option("choice.accepted_evidence_kept", options.accepted_evidence_kept, 0.0, 1.0);
+    check_option("choice.log_odds_kept", options.log_odds_kept, 0.0, 1.0);
+    check_option("choice.log_odds_kept_unmeasured", options.log_odds_kept_unmeasured, 0.0, 1.0);
+    check_option("choice.alternatives_remembered", options.alternatives_remembered, 0, 1000);
+    check_option("choice.least_log_odds", options.least_log_odds, -1e6, 0.0);
+    check_option("choice.alternatives_within_diameters", options.alternatives_within_diameters, 0.0, 1e3);
 }
 
 void validate(const PresenceOptions& options) {
@@ -105,6 +111,7 @@ void validate(const PhaseEffort& effort, const std::string& name) {
 
 void validate(const AdaptiveEffort& effort) {
     check_option("effort.frames_to_confirm", effort.frames_to_confirm, 0, 1e6);
+    validate(effort.comparing, "effort.comparing");
     validate(effort.confirming, "effort.confirming");
     validate(effort.tracking, "effort.tracking");
     check_option("effort.predicted_rounds", effort.predicted_rounds, 0, 100);

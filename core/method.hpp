@@ -28,7 +28,7 @@ struct FilterOptions {
 struct HypothesisOptions {
     int modes = 0;                 // best distinct modes of the particles that are refined; 0: the MAP is the estimate
     int alternatives = 0;          // poses that the best modes may be mistaken for, tried as further hypotheses
-    int alternatives_period = 10;  // frames between such trials once the track is confirmed
+    int alternatives_period = 10;  // frames between such trials once the track is settled
     int alternatives_refined = 3;  // the best of them
     int leaders = 2;               // modes whose alternatives are tried
     AlternativeOptions changes;    // which turns and shifts
@@ -43,7 +43,10 @@ struct PreselectionOptions {
     int tried = 24;  // of the particles' modes, and of the hypotheses from pairs; 0: no preselection
     int rays = 800;
     int rounds = 3;
-    int kept = 8;           // also of the hypotheses from pairs that are refined where there is no preselection
+    int kept = 8;  // also of the hypotheses from pairs that are refined where there is no preselection
+    // For the choice between modes all over the image, of the evidence against planes; 0: that does not count. Without
+    // it a stereo camera's image of the block among other things shows the block in a wall.
+    int presence_rays = 2000;
     int disambiguated = 4;  // modes near the chosen one that are compared with it on the object alone
 };
 
@@ -55,6 +58,14 @@ struct ChoiceOptions {
     // from frame to frame this share of it is kept. Without it 5 instead of 19 of 20 approaches to the bracket held.
     bool accepted_evidence = true;
     double accepted_evidence_kept = 0.7;
+    // Log-odds of alternatives add up over the frames, of which this share is kept from one to the next: what misleads
+    // one image, such as a smooth error of the sensor, misleads the next one as well.
+    double log_odds_kept = 0.8;             // where the camera's motion is measured
+    double log_odds_kept_unmeasured = 0.5;  // where it is not
+    // The likeliest alternatives are remembered: so many, down to these log-odds.
+    int alternatives_remembered = 6;
+    double least_log_odds = -12.0;
+    double alternatives_within_diameters = 0.5;  // their centres, of that of the chosen pose
 };
 
 // How long the object is believed to be there. The log-odds are those of a Bayes filter that forgets: what the frames
@@ -82,12 +93,14 @@ struct PhaseEffort {
     int alternatives;   // tried
 };
 
-// What is spared in the phases confirming and tracking. In searching and acquiring the method's own numbers hold: with
-// fewer rays for particles there, 3 more of 45 cluttered runs went wrong. In tracking the posterior is narrow, and a
-// few particles describe it (KLD sampling, Fox 2003).
+// What is spared in the phases comparing, confirming and tracking. In searching and acquiring the method's own numbers
+// hold: with fewer rays for particles there, 3 more of 45 cluttered runs went wrong. In tracking the posterior is
+// narrow, and a few particles describe it (KLD sampling, Fox 2003).
 struct AdaptiveEffort {
     bool on = false;
     int frames_to_confirm = 5;  // without replacement, after which the track is confirmed
+    // With fewer rays of refinement the flange is not told from its half turn.
+    PhaseEffort comparing{.particle_rays = 128, .mode_rays = 100000, .mode_rounds = 3, .alternatives = 100000};
     // As many alternatives as the method says. With 800 rays of refinement a tenth fewer frames are accepted.
     PhaseEffort confirming{.particle_rays = 128, .mode_rays = 2000, .mode_rounds = 3, .alternatives = 100000};
     PhaseEffort tracking{.particle_rays = 128, .mode_rays = 800, .mode_rounds = 2, .alternatives = 32};

@@ -33,8 +33,8 @@ std::vector<Mode> distinct_modes(const std::vector<Mode>& modes, int max_count, 
 
 void set_weights(std::vector<Mode>& modes) {
     double best = -std::numeric_limits<double>::infinity(), sum = 0.0;
-    for (const Mode& mode : modes) best = std::max(best, mode.log_evidence);
-    for (Mode& mode : modes) sum += mode.weight = std::exp(mode.log_evidence - best);
+    for (const Mode& mode : modes) best = std::max(best, mode.log_posterior());
+    for (Mode& mode : modes) sum += mode.weight = std::exp(mode.log_posterior() - best);
     for (Mode& mode : modes) mode.weight /= sum;
 }
 

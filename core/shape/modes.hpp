@@ -15,8 +15,11 @@ struct Mode {
     double cost = 0.0;                       // smaller is better; 1: as without the object
     double support = 0.0;                    // share of the model's rays that agree with the measured depth, in 0..1
     double log_evidence = 0.0;               // of the present image for it, up to a constant [nats]
+    double log_prior = 0.0;                  // what the frames before said of it, against the tracked mode [nats]
     double weight = 0.0;                     // share of the probability, among the modes beside it
     Matrix6d covariance = Matrix6d::Zero();  // of the twist of camera_from_object * exp(twist), rotation first
+
+    double log_posterior() const { return log_evidence + log_prior; }  // up to the same constant
 };
 
 // A pose as a mode of which only the cost is known; where not even that is, 1, the worst that a pixel cost has.
@@ -40,7 +43,7 @@ bool same_mode(const Pose& a, const Pose& b, const Eigen::Vector3d& centre_in_ob
 std::vector<Mode> distinct_modes(const std::vector<Mode>& modes, int max_count, const Eigen::Vector3d& centre_in_object,
                                  const ModeDistance& distance);
 
-// Weights of modes by their evidence, summing to 1.
+// Weights of modes by this image and the frames before, summing to 1.
 void set_weights(std::vector<Mode>& modes);
 
 // Which changes of a pose are tried as alternatives, about and along the axes of the part's box.

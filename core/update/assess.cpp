@@ -1,9 +1,11 @@
 #include "core/update/assess.hpp"
 
+#include <algorithm>
+
 #include "core/base/parallel.hpp"
 #include "core/base/text.hpp"
-#include "core/evidence/background.hpp"
 #include "core/fit/joint_fit.hpp"
+#include "core/update/pose_evidence.hpp"
 #include "core/update/ray_grids.hpp"
 
 namespace nearpose {
@@ -36,18 +38,6 @@ std::string name_of_alternative(const std::vector<Mode>& modes, const Pose& pose
            " and shifted by " + fixed_text(kMillimetres * shift_m, 1) + " mm";
 }
 
-// What the image shows of the object at the estimate, by itself.
-void write_pixels(UpdateResult& result, const StepContext& context, const RefinementOptions& refinement,
-                  const Frame& frame) {
-    const PixelCostOptions options = refined_cost_options(context, refinement);
-    const Pose& pose = result.camera_from_object;
-    const View view = context.views.generate(pose, context.observed.camera);
-    result.pixels = pixel_cost(view, pose, context.observed, options);
-    const auto planes = fit_background(view, context.observed, options, frame.method().background);
-    result.positive_evidence =
-        positive_evidence(view, pose, context.observed, planes, options, frame.method().background);
-}
-
 }  // namespace
 
 Assessment assess(UpdateResult& result, const Belief& belief, const std::optional<Matrix6d>& fit_covariance,
@@ -72,17 +62,17 @@ Assessment assess(UpdateResult& result, const Belief& belief, const std::optiona
         observability_of(observed.value_or(kOneMetre * Matrix6d::Identity()), 0.5 * frame.model.diameter_m(),
                          frame.options.tolerance.translation_m, frame.model.symmetries, centre);
     describe_modes(result.modes, observed, context, frame);
-    write_pixels(result, context, refinement, frame);
-    const double frame_log_odds =
-        log_odds_present(result.positive_evidence, grid.stride, method.pixel_cost, frame.observation.sensor());
-    result.log_odds_present = log_odds_with(frame_log_odds, belief.lock, method.presence);
+    const PoseEvidence shown = evidence_at(pose, context, refinement, frame);
+    result.pixels = shown.pixels;
+    result.positive_evidence = shown.positive;
+    result.log_odds_present = log_odds_with(shown.log_odds_present, belief.lock, method.presence);
 
     Evidence evidence;
     evidence.seen = estimated;
     evidence.log_odds_present = result.log_odds_present;
     evidence.pixels = result.pixels;
     evidence.alternatives_weight = belief.lock.alternatives_weight;
-    evidence.alternatives_tried = belief.lock.alternatives_tried;
+    evidence.alternatives_tried = belief.lock.alternatives_tried >= std::max(1, method.hypotheses.alternatives);
     evidence.alternative = name_of_alternative(result.modes, pose, frame.model);
     evidence.covariance_about_centre = about_centre(result.covariance, centre);
     const Judgement judgement = judge(evidence, frame.options.tolerance, frame.model.symmetries, method.verification);

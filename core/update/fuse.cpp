@@ -49,14 +49,6 @@ Matrix6d correct(Belief& belief, const Choice& choice, const Situation& situatio
     return fit.covariance + fit.constant_covariance;
 }
 
-// Share of the probability that modes other than the tracked one have.
-double weight_of_alternatives(const std::vector<Mode>& modes, const Pose& tracked, const ObjectModel& model) {
-    double weight = 0.0;
-    for (const Mode& mode : modes)
-        if (!model.same_mode(mode.camera_from_object, tracked)) weight += mode.weight;
-    return weight;
-}
-
 // The particles learn of the chosen pose in place of their least likely one.
 void replace_least_likely(ParticleSet& particles, const Pose& chosen) {
     const auto worst = std::max_element(particles.negative_log_weights.begin(), particles.negative_log_weights.end());
@@ -69,6 +61,7 @@ void replace_least_likely(ParticleSet& particles, const Pose& chosen) {
 void adopt(Belief& belief, const MovedParticles& moved, const Choice& choice) {
     belief.particles = moved.particles;
     belief.tracked = choice.mode;
+    belief.alternatives = choice.alternatives;
 }
 
 std::optional<Matrix6d> fuse(Belief& belief, const Choice& choice, const Situation& situation, const Frame& frame,
@@ -76,9 +69,8 @@ std::optional<Matrix6d> fuse(Belief& belief, const Choice& choice, const Situati
     std::optional<Matrix6d> covariance;
     if (frame.method().fusion) covariance = correct(belief, choice, situation, frame, ledger);
     std::optional<double> alternatives_weight;
-    if (ledger.effort.alternatives > 0 && choice.all_refined)
-        alternatives_weight = weight_of_alternatives(choice.modes, belief.tracked->camera_from_object, frame.model);
-    belief.lock = after_choice(belief.lock, choice.replaces_tracked, alternatives_weight);
+    if (choice.alternatives_compared) alternatives_weight = weight_of(belief.alternatives);
+    belief.lock = after_choice(belief.lock, choice.replaces_tracked, ledger.effort.alternatives, alternatives_weight);
     replace_least_likely(belief.particles, choice.mode.camera_from_object);
     return covariance;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/parallel.hpp"
+#include "core/update/pose_evidence.hpp"
 #include "core/update/ray_grids.hpp"
 
 namespace nearpose {
@@ -40,7 +41,13 @@ std::vector<Mode> preselect(const std::vector<Mode>& particles, const Situation&
         const Pose& pose = modes[k].camera_from_object;
         const ObservedGrid observed = observe(frame.observation, ray_grid_on_model(frame, pose, options.rays));
         moved[k] = refine_mode(pose, frame.context(observed, frame.method().step), refinement);
-        modes[k] = mode_at(moved[k].camera_from_object, -moved[k].gain * observed.grid.stride * observed.grid.stride);
+        const ObservedGrid around =
+            observe(frame.observation, ray_grid(frame, moved[k].camera_from_object, options.rays));
+        const PoseEvidence shown =
+            evidence_at(moved[k].camera_from_object, frame.context(around, frame.method().step), refinement, frame);
+        const double absent = std::min(0.0, shown.positive.total()) * around.grid.stride * around.grid.stride;
+        modes[k] =
+            mode_at(moved[k].camera_from_object, -moved[k].gain * observed.grid.stride * observed.grid.stride - absent);
     });
     for (const RefinedMode& mode : moved) ledger.add(mode.counts, mode.seconds);
     ledger.budget.took(Stage::kPreselection, count, watch.elapsed_s());
@@ -49,6 +56,16 @@ std::vector<Mode> preselect(const std::vector<Mode>& particles, const Situation&
 
 void append(std::vector<Mode>& modes, const std::vector<Mode>& more) {
     modes.insert(modes.end(), more.begin(), more.end());
+}
+
+// Those that are no mode of `known`.
+void append_new(std::vector<Mode>& modes, const std::vector<Mode>& more, const std::vector<Mode>& known,
+                const ObjectModel& model) {
+    for (const Mode& mode : more)
+        if (std::none_of(known.begin(), known.end(), [&](const Mode& other) {
+                return model.same_mode(mode.camera_from_object, other.camera_from_object);
+            }))
+            modes.push_back(mode);
 }
 
 }  // namespace
@@ -63,8 +80,7 @@ std::vector<Mode> propose(const Belief& belief, const MovedParticles& moved, con
                                                               : frame.model.distinct(particles, options.modes);
     // Once a pose is established, one hypothesis is enough for its mode: its prediction where the image agrees with it,
     // else the particle that came nearest, as where the object moves.
-    const bool established = situation.phase == Phase::kConfirming || situation.phase == Phase::kTracking;
-    const bool leads = established && !leaders.empty() &&
+    const bool leads = is_established(situation.phase) && !leaders.empty() &&
                        frame.model.same_mode(leaders.front().camera_from_object, belief.tracked->camera_from_object);
     std::vector<Mode> modes;
     if (leads && !situation.prediction)
@@ -73,14 +89,19 @@ std::vector<Mode> propose(const Belief& belief, const MovedParticles& moved, con
         modes.push_back(*belief.tracked);
     if (leads) leaders.erase(leaders.begin());
     if (belief.pose_before_loss) modes.push_back(mode_at(*belief.pose_before_loss));
-    append(modes, leaders);
+    std::vector<Mode> known;
+    if (belief.tracked && compares_alternatives(belief.lock, frame.method(), frame.step))
+        known = modes_of(belief.alternatives, belief.tracked->camera_from_object);
+    append(modes, known);
+    append_new(modes, leaders, known, frame.model);
     if (!preselected)
         for (const Pose& pose : situation.best_from_pairs) modes.push_back(mode_at(pose));
     // A search everywhere tries those of the mode that it has chosen, see disambiguate.
     if (options.alternatives > 0 && alternatives_due(belief.lock, frame.method(), frame.step) && !found_anywhere) {
         const std::vector<Mode> alternatives = best_alternatives(modes, situation, frame, ledger);
-        if (!modes.empty()) append(modes, near_symmetric_modes(modes.front(), frame.model.symmetries));
-        append(modes, alternatives);
+        if (!modes.empty())
+            append_new(modes, near_symmetric_modes(modes.front(), frame.model.symmetries), known, frame.model);
+        append_new(modes, alternatives, known, frame.model);
     }
     move_to_nearest_equivalents(modes, frame.model);
     return modes;
@@ -104,8 +125,9 @@ std::vector<Mode> best_alternatives(const std::vector<Mode>& leaders, const Situ
     const std::size_t used = std::min(leaders.size(), static_cast<std::size_t>(options.leaders));
     std::vector<Pose> proposals;
     for (std::size_t k = 0; k < used; ++k) {
+        const auto first = wanted * k / used, last = wanted * (k + 1) / used;
         const std::vector<Pose> of_leader =
-            alternatives_of(leaders[k].camera_from_object, frame.model.extent(), wanted / static_cast<int>(used),
+            alternatives_of(leaders[k].camera_from_object, frame.model.extent(), static_cast<int>(last - first),
                             frame.options.seed + k, frame.step, options.changes);
         proposals.insert(proposals.end(), of_leader.begin(), of_leader.end());
     }

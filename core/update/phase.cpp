@@ -1,7 +1,6 @@
 #include "core/update/phase.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace nearpose {
 
@@ -11,6 +10,8 @@ const char* to_string(Phase phase) {
             return "searching";
         case Phase::kAcquiring:
             return "acquiring";
+        case Phase::kComparing:
+            return "comparing";
         case Phase::kConfirming:
             return "confirming";
         case Phase::kTracking:
@@ -27,34 +28,49 @@ bool search_due(const Lock& lock, const Method& method) {
                                   lock.frames_low_agreement % options.low_agreement_period == 0);
 }
 
+bool settled(const Lock& lock, const Method& method) {
+    return lock.frames_unreplaced >= method.effort.frames_to_confirm && lock.frames_contradicted == 0;
+}
+
 bool confirmed(const Lock& lock, const Method& method) {
-    return lock.frames_unreplaced >= method.effort.frames_to_confirm &&
-           lock.alternatives_weight < method.verification.max_alternatives_weight && lock.frames_contradicted == 0;
+    return settled(lock, method) && lock.alternatives_weight <= method.verification.max_alternatives_weight;
 }
 
 bool alternatives_due(const Lock& lock, const Method& method, std::uint64_t step) {
-    return !confirmed(lock, method) || step % static_cast<std::uint64_t>(method.hypotheses.alternatives_period) == 0;
+    return !settled(lock, method) || step % static_cast<std::uint64_t>(method.hypotheses.alternatives_period) == 0;
+}
+
+bool compares_alternatives(const Lock& lock, const Method& method, std::uint64_t step) {
+    return !confirmed(lock, method) || alternatives_due(lock, method, step);
 }
 
 Phase phase_of(const Lock& lock, const Method& method, bool has_particles) {
     if (!has_particles || search_due(lock, method)) return Phase::kSearching;
     if (!method.effort.on) return Phase::kAcquiring;
     if (confirmed(lock, method)) return Phase::kTracking;
-    // With a third of the rays the alternatives are told apart by a third of the evidence.
-    const double rays_before = plan_of(lock.phase, method, false).refinement.max_rays;
-    const double share = std::min(1.0, method.effort.confirming.mode_rays / rays_before);
-    const bool told_apart = std::pow(lock.alternatives_weight, share) <= method.verification.max_alternatives_weight;
-    return lock.verified && told_apart ? Phase::kConfirming : Phase::kAcquiring;
+    if (settled(lock, method)) return Phase::kComparing;
+    return lock.verified ? Phase::kConfirming : Phase::kAcquiring;
 }
 
 Phase phase_after_prediction(Phase phase, bool image_agrees) {
     return phase == Phase::kTracking && !image_agrees ? Phase::kConfirming : phase;
 }
 
+namespace {
+
+// None where the method's own numbers hold.
+const PhaseEffort* effort_of(Phase phase, const AdaptiveEffort& effort) {
+    if (phase == Phase::kComparing) return &effort.comparing;
+    if (phase == Phase::kConfirming) return &effort.confirming;
+    return phase == Phase::kTracking ? &effort.tracking : nullptr;
+}
+
+}  // namespace
+
 Plan plan_of(Phase phase, const Method& method, bool predicted) {
     Plan plan{method.step, method.refinement, method.hypotheses.alternatives};
-    if (phase == Phase::kConfirming || phase == Phase::kTracking) {
-        const PhaseEffort& effort = phase == Phase::kTracking ? method.effort.tracking : method.effort.confirming;
+    if (const PhaseEffort* found = effort_of(phase, method.effort)) {
+        const PhaseEffort& effort = *found;
         plan.step.max_rays = std::min(plan.step.max_rays, effort.particle_rays);
         plan.refinement.max_rays = std::min(plan.refinement.max_rays, effort.mode_rays);
         plan.refinement.rounds = std::min(plan.refinement.rounds, effort.mode_rounds);
@@ -75,16 +91,17 @@ Lock after_decision(Lock lock, Phase phase) {
     return lock;
 }
 
-Lock after_choice(Lock lock, bool replaced, const std::optional<double>& alternatives_weight) {
+Lock after_choice(Lock lock, bool replaced, int alternatives_tried, const std::optional<double>& alternatives_weight) {
     if (replaced) {
-        lock.alternatives_tried = false;
-        lock.log_odds_present = 0.0;  // the evidence was for another pose
+        lock.alternatives_tried = 0;
+        // The evidence was for another pose.
+        lock.log_odds_present = 0.0;
+        lock.accepted_evidence = 0.0;
+        lock.frames_low_agreement = 0;
     }
+    lock.alternatives_tried += alternatives_tried;
     lock.frames_unreplaced = replaced ? 0 : lock.frames_unreplaced + 1;
-    if (alternatives_weight) {
-        lock.alternatives_tried = true;
-        lock.alternatives_weight = *alternatives_weight;
-    }
+    if (alternatives_weight) lock.alternatives_weight = *alternatives_weight;
     return lock;
 }
 
@@ -98,7 +115,6 @@ Lock after_assessment(Lock lock, const Assessment& assessment, const Method& met
     lock.verified = assessment.verified;
     lock.log_odds_present = assessment.log_odds_present;
     lock.frames_contradicted = assessment.agreement < limits.contradicted_below ? lock.frames_contradicted + 1 : 0;
-    if (accepted) lock.frames_low_agreement = 0;
     lock.low_agreement = method.relocalisation.low_agreement && assessment.agreement < limits.min_agreement;
     lock.frames_low_agreement += lock.low_agreement;
     if (accepted && method.choice.accepted_evidence)

@@ -8,7 +8,7 @@ namespace nearpose {
 int particles_wanted(const Belief& belief, const Frame& frame) {
     const AdaptiveEffort& effort = frame.method().effort;
     const int most = frame.options.num_particles;
-    if (!effort.on || !confirmed(belief.lock, frame.method())) return most;
+    if (!effort.on || !settled(belief.lock, frame.method())) return most;
     const ParticleSet& particles = belief.particles;
     const double best = particles.negative_log_weights[map_index(particles.negative_log_weights)];
     std::vector<Mode> likely;

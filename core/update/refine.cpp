@@ -42,8 +42,7 @@ RefinedMode evaluate_prediction(const Pose& predicted, const Situation& situatio
 }
 
 Situation gate_prediction(Situation situation, const Belief& predicted, const Frame& frame, Ledger& ledger) {
-    const bool established = situation.phase == Phase::kConfirming || situation.phase == Phase::kTracking;
-    if (!established || !(predicted.lock.accepted_evidence > 0.0)) return situation;
+    if (!is_established(situation.phase) || !(predicted.lock.accepted_evidence > 0.0)) return situation;
     const RefinedMode prediction = evaluate_prediction(predicted.tracked->camera_from_object, situation, frame, ledger);
     const bool agrees = prediction.inlier_ratio >= frame.method().verification.min_agreement;
     if (agrees) situation.prediction = prediction;

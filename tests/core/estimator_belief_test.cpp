@@ -127,7 +127,8 @@ TEST(Belief, ANewOneKnowsNothingAndResetMakesOne) {
     EXPECT_EQ(belief.particles.size(), 0);
     EXPECT_FALSE(belief.tracked || belief.track || belief.pose_before_loss);
     EXPECT_EQ(belief.lock.phase, Phase::kSearching);
-    EXPECT_FALSE(belief.lock.verified || belief.lock.low_agreement || belief.lock.alternatives_tried);
+    EXPECT_FALSE(belief.lock.verified || belief.lock.low_agreement);
+    EXPECT_EQ(belief.lock.alternatives_tried, 0);
     EXPECT_EQ(belief.lock.alternatives_weight, 0.0);
     EXPECT_EQ(belief.lock.frames_unreplaced + belief.lock.frames_contradicted + belief.lock.frames_low_agreement, 0);
     EXPECT_EQ(belief.lock.accepted_evidence, 0.0);

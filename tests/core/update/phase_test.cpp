@@ -15,7 +15,7 @@ Lock established() {
     Lock lock;
     lock.phase = Phase::kTracking;
     lock.verified = true;
-    lock.alternatives_tried = true;
+    lock.alternatives_tried = 96;
     lock.frames_unreplaced = 100;
     lock.accepted_evidence = 50.0;
     return lock;
@@ -46,13 +46,14 @@ TEST(Phase, FollowsFromTheRecordOfTheFramesBefore) {
          Phase::kConfirming},
         {"replaced just now, and not verified", changed([](Lock& l) { l.frames_unreplaced = 4, l.verified = false; }),
          true, Phase::kAcquiring},
-        {"an alternative is left", changed([](Lock& l) { l.alternatives_weight = 0.02; }), true, Phase::kAcquiring},
-        {"an alternative is left that fewer rays still tell apart, so few were cast before",
-         changed([](Lock& l) { l.alternatives_weight = 0.01, l.phase = Phase::kConfirming; }), true,
-         Phase::kConfirming},
-        {"an alternative is left that fewer rays would not tell apart",
-         changed([](Lock& l) { l.alternatives_weight = 0.0099, l.frames_unreplaced = 0, l.phase = Phase::kAcquiring; }),
-         true, Phase::kAcquiring},
+        {"an alternative is left", changed([](Lock& l) { l.alternatives_weight = 0.02; }), true, Phase::kComparing},
+        {"an alternative is just not left", changed([](Lock& l) { l.alternatives_weight = 0.01; }), true,
+         Phase::kTracking},
+        {"an alternative is left of a pose that is not verified",
+         changed([](Lock& l) { l.alternatives_weight = 0.02, l.verified = false; }), true, Phase::kComparing},
+        {"an alternative is left of a pose found just now",
+         changed([](Lock& l) { l.alternatives_weight = 0.02, l.verified = false, l.frames_unreplaced = 0; }), true,
+         Phase::kAcquiring},
         {"contradicted by the image", changed([](Lock& l) { l.frames_contradicted = 1; }), true, Phase::kSearching},
         {"contradicted for long", changed([](Lock& l) { l.frames_contradicted = 7; }), true, Phase::kSearching},
         {"agrees too little, at first",
@@ -75,7 +76,8 @@ TEST(Phase, FollowsFromTheRecordOfTheFramesBefore) {
 }
 
 TEST(Phase, OnlyATrackIsSetBackByAnImageThatDisagreesWithItsPrediction) {
-    for (const Phase phase : {Phase::kSearching, Phase::kAcquiring, Phase::kConfirming, Phase::kTracking})
+    for (const Phase phase :
+         {Phase::kSearching, Phase::kAcquiring, Phase::kComparing, Phase::kConfirming, Phase::kTracking})
         EXPECT_EQ(phase_after_prediction(phase, true), phase);
     EXPECT_EQ(phase_after_prediction(Phase::kTracking, false), Phase::kConfirming);
     EXPECT_EQ(phase_after_prediction(Phase::kConfirming, false), Phase::kConfirming);
@@ -99,7 +101,8 @@ TEST(Phase, WhatIsSwitchedOffIsNeverEntered) {
 
 TEST(Phase, EachIsWorthNoMoreThanTheOneBefore) {
     const Method method = method_default();
-    const std::vector<Phase> phases = {Phase::kSearching, Phase::kAcquiring, Phase::kConfirming, Phase::kTracking};
+    const std::vector<Phase> phases = {Phase::kSearching, Phase::kAcquiring, Phase::kComparing, Phase::kConfirming,
+                                       Phase::kTracking};
     for (std::size_t k = 1; k < phases.size(); ++k) {
         const Plan before = plan_of(phases[k - 1], method, false), after = plan_of(phases[k], method, false);
         EXPECT_LE(after.step.max_rays, before.step.max_rays);
@@ -129,11 +132,23 @@ TEST(Phase, NoPhaseAsksForMoreThanTheMethod) {
     EXPECT_EQ(plan.alternatives, 2);
 }
 
-TEST(Lock, AlternativesAreDueInEveryFrameUntilTheTrackIsConfirmedAndThenPeriodically) {
+TEST(Lock, NewAlternativesAreDueInEveryFrameUntilTheTrackIsSettledAndThenPeriodically) {
     const Method method = method_default();
+    const Lock undecided = changed([](Lock& l) { l.alternatives_weight = 0.4; });
     for (std::uint64_t step = 0; step < 30; ++step) {
         EXPECT_TRUE(alternatives_due(Lock{}, method, step));
         EXPECT_EQ(alternatives_due(established(), method, step), step % 10 == 0);
+        EXPECT_EQ(alternatives_due(undecided, method, step), step % 10 == 0);
+    }
+}
+
+TEST(Lock, KnownAlternativesAreComparedInEveryFrameWhileOneIsLeft) {
+    const Method method = method_default();
+    const Lock undecided = changed([](Lock& l) { l.alternatives_weight = 0.4; });
+    for (std::uint64_t step = 0; step < 30; ++step) {
+        EXPECT_TRUE(compares_alternatives(Lock{}, method, step));
+        EXPECT_TRUE(compares_alternatives(undecided, method, step));
+        EXPECT_EQ(compares_alternatives(established(), method, step), step % 10 == 0);
     }
 }
 
@@ -155,19 +170,21 @@ TEST(Lock, TheBeliefThatTheObjectIsThereIsABayesFilterThatForgets) {
     EXPECT_DOUBLE_EQ(log_odds_with(1e6, lock, method.presence), method.presence.max_log_odds);
     EXPECT_DOUBLE_EQ(log_odds_with(-1e6, lock, method.presence), -method.presence.max_log_odds)
         << "however long it was seen, it may be taken away";
-    EXPECT_EQ(after_choice(lock, true, std::nullopt).log_odds_present, 0.0) << "the evidence was for another pose";
+    EXPECT_EQ(after_choice(lock, true, 0, std::nullopt).log_odds_present, 0.0) << "the evidence was for another pose";
 }
 
 TEST(Lock, AReplacementBeginsTheCountAnewAndAsksForAlternativesAgain) {
-    const Lock replaced = after_choice(established(), true, std::nullopt);
+    const Lock replaced = after_choice(established(), true, 0, std::nullopt);
     EXPECT_EQ(replaced.frames_unreplaced, 0);
-    EXPECT_FALSE(replaced.alternatives_tried);
-    const Lock tried = after_choice(replaced, false, 0.3);
-    EXPECT_EQ(tried.frames_unreplaced, 1);
-    EXPECT_TRUE(tried.alternatives_tried);
-    EXPECT_EQ(tried.alternatives_weight, 0.3);
-    const Lock untried = after_choice(tried, false, std::nullopt);
-    EXPECT_EQ(untried.alternatives_weight, 0.3) << "what was learned of them stays until they are tried again";
+    EXPECT_EQ(replaced.alternatives_tried, 0);
+    EXPECT_EQ(replaced.accepted_evidence, 0.0) << "it was for another pose";
+    const Lock some = after_choice(replaced, false, 40, 0.3);
+    EXPECT_EQ(some.frames_unreplaced, 1);
+    EXPECT_EQ(some.alternatives_tried, 40);
+    EXPECT_EQ(some.alternatives_weight, 0.3);
+    const Lock more = after_choice(some, false, 60, std::nullopt);
+    EXPECT_EQ(more.alternatives_tried, 100) << "a budget may spread them over several frames";
+    EXPECT_EQ(more.alternatives_weight, 0.3) << "what was learned of them stays until they are compared again";
 }
 
 TEST(Lock, CountsWhatContradictsAndWhatIsUnverified) {
@@ -184,9 +201,10 @@ TEST(Lock, CountsWhatContradictsAndWhatIsUnverified) {
     EXPECT_EQ(lock.accepted_evidence, 0.0) << "was not accepted";
     lock = after_assessment(lock, {Verdict::kContinue, true, 0.95, 9.0}, method);
     EXPECT_FALSE(lock.low_agreement);
-    EXPECT_EQ(lock.frames_low_agreement, 3) << "counts since a pose was accepted";
+    EXPECT_EQ(lock.frames_low_agreement, 3) << "counts since the mode was replaced";
     lock = after_assessment(lock, {Verdict::kAccept, true, 0.95, 9.0}, method);
-    EXPECT_EQ(lock.frames_low_agreement, 0);
+    EXPECT_EQ(lock.frames_low_agreement, 3) << "one that is accepted now and then is not searched for each time";
+    EXPECT_EQ(after_choice(lock, true, 0, std::nullopt).frames_low_agreement, 0);
     EXPECT_EQ(lock.accepted_evidence, 9.0);
     lock = after_assessment(lock, {Verdict::kAccept, true, 0.95, 5.0}, method);
     EXPECT_EQ(lock.accepted_evidence, 9.0) << "more is not undone by less";
