@@ -19,6 +19,7 @@ NEARPOSE_EMBEDDED(kinect_v1_json)
 NEARPOSE_EMBEDDED(stereo_d405_json)
 NEARPOSE_EMBEDDED(stereo_d415_json)
 NEARPOSE_EMBEDDED(stereo_d435_json)
+NEARPOSE_EMBEDDED(structured_carmine_json)
 
 namespace nearpose::simulate {
 namespace {
@@ -32,6 +33,7 @@ constexpr int kFormat = 1;
 constexpr const char* kRadius = "edge_radius_pixels";  // the one whole number of the noise
 constexpr const char* kNoise = "noise";
 constexpr const char* kStereo = "active_stereo";
+constexpr const char* kLight = "structured_light";
 
 struct Figure {
     const char* key;
@@ -99,7 +101,7 @@ constexpr std::array kStereoNumbers{
     StereoNumber{"speckle_pixels", &StereoRig::speckle_pixels},
     StereoNumber{"speckle_range_pixels", &StereoRig::speckle_range_pixels},
 };
-// The number of dots is padded to a double. A figure that is added to StereoRig must be added here.
+// The flag of the kind and the number of dots fill a double. A figure that is added to StereoRig must be added here.
 static_assert(sizeof(StereoRig) == kStereoFigures.size() * sizeof(double) + kStereoNumbers.size() * sizeof(int) + 4);
 
 std::string listed(const std::vector<std::string>& words) {
@@ -136,18 +138,27 @@ SensorNoise read_noise(const JsonValue& object) {
     return noise;
 }
 
-std::vector<std::string> stereo_keys() {
+// Structured light has its projector where the right camera would be.
+bool is_figure_of(const StereoFigure& figure, const std::string& section) {
+    return section == kStereo || figure.value != &StereoRig::projector_m;
+}
+
+std::vector<std::string> stereo_keys(const std::string& section) {
     std::vector<std::string> keys;
-    for (const StereoFigure& figure : kStereoFigures) keys.emplace_back(figure.key);
+    for (const StereoFigure& figure : kStereoFigures)
+        if (is_figure_of(figure, section)) keys.emplace_back(figure.key);
     for (const StereoNumber& number : kStereoNumbers) keys.emplace_back(number.key);
     return keys;
 }
 
-StereoRig read_stereo(const JsonValue& object) {
-    refuse_other_keys(object, stereo_keys());
+StereoRig read_stereo(const JsonValue& object, const std::string& section) {
+    refuse_other_keys(object, stereo_keys(section));
     StereoRig rig;
-    for (const StereoFigure& figure : kStereoFigures) rig.*figure.value = object.at(figure.key).number();
+    for (const StereoFigure& figure : kStereoFigures)
+        if (is_figure_of(figure, section)) rig.*figure.value = object.at(figure.key).number();
     for (const StereoNumber& number : kStereoNumbers) rig.*number.value = object.at(number.key).integer();
+    rig.structured_light = section == kLight;
+    if (rig.structured_light) rig.projector_m = rig.baseline_m;
     return rig;
 }
 
@@ -160,7 +171,8 @@ void validate(const SensorDescription& sensor) {
 
 SensorDescription read_description(const JsonFile& file) {
     const JsonValue root = file.root();
-    refuse_other_keys(root, {"format", "name", "description", "camera", "depth_scale_mm", kNoise, kStereo, "sources"});
+    refuse_other_keys(
+        root, {"format", "name", "description", "camera", "depth_scale_mm", kNoise, kStereo, kLight, "sources"});
     const int format = root.at("format").integer();
     if (format != kFormat) {
         throw root.at("format").error("is " + std::to_string(format) + ", but must be " + std::to_string(kFormat));
@@ -170,8 +182,11 @@ SensorDescription read_description(const JsonFile& file) {
     sensor.description = root.at("description").text();
     sensor.camera = read_camera(root.at("camera"));
     sensor.depth_scale_mm = root.at("depth_scale_mm").number();
-    const auto stereo = root.find(kStereo);
-    if (stereo) sensor.stereo = read_stereo(*stereo);
+    if (root.find(kStereo) && root.find(kLight))
+        throw root.error(std::string("has ") + kStereo + " and " + kLight + ", but must have one of them");
+    const char* const section = root.find(kLight) ? kLight : kStereo;
+    const auto stereo = root.find(section);
+    if (stereo) sensor.stereo = read_stereo(*stereo, section);
     if (!stereo || root.find(kNoise)) sensor.noise = read_noise(root.at(kNoise));
     if (stereo && !root.find(kNoise)) {
         sensor.noise.min_range_m = sensor.stereo->min_range_m;
@@ -181,7 +196,7 @@ SensorDescription read_description(const JsonFile& file) {
                    sensor.noise.max_range_m != sensor.stereo->max_range_m))
         throw stereo->error("min_range_m and max_range_m must be those of noise");
     const JsonValue sources = root.at("sources");
-    refuse_other_keys(sources, sensor_figures({kNoise, kStereo}));
+    refuse_other_keys(sources, sensor_figures({kNoise, section}));
     for (const auto& [key, value] : sources.members()) sensor.sources[key] = value.text();
     try {
         validate(sensor);
@@ -201,7 +216,8 @@ const std::map<std::string, std::string_view>& built_in() {
         {"kinect_v1", NEARPOSE_EMBEDDED_BYTES(kinect_v1_json)},
         {"stereo_d405", NEARPOSE_EMBEDDED_BYTES(stereo_d405_json)},
         {"stereo_d415", NEARPOSE_EMBEDDED_BYTES(stereo_d415_json)},
-        {"stereo_d435", NEARPOSE_EMBEDDED_BYTES(stereo_d435_json)}};
+        {"stereo_d435", NEARPOSE_EMBEDDED_BYTES(stereo_d435_json)},
+        {"structured_carmine", NEARPOSE_EMBEDDED_BYTES(structured_carmine_json)}};
     return files;
 }
 
@@ -219,7 +235,7 @@ const std::vector<std::string>& sensor_names() {
 std::vector<std::string> sensor_figures(const std::vector<std::string>& sections) {
     std::vector<std::string> keys{"camera", "depth_scale_mm"};
     for (const std::string& section : sections) {
-        const std::vector<std::string> figures = section == kNoise ? noise_keys() : stereo_keys();
+        const std::vector<std::string> figures = section == kNoise ? noise_keys() : stereo_keys(section);
         for (const std::string& figure : figures) keys.push_back(section + "." + figure);
     }
     return keys;
@@ -241,7 +257,8 @@ SensorDescription read_sensor(const std::string& name_or_path) {
 void write_sensor(const std::filesystem::path& path, const SensorDescription& sensor) {
     validate(sensor);
     if (sensor.stereo)
-        throw std::invalid_argument(sensor.name + ": an active_stereo sensor cannot be written, only simple noise");
+        throw std::invalid_argument(sensor.name + ": a sensor with " + section_of(*sensor.stereo) +
+                                    " cannot be written, only simple noise");
     const PinholeCamera& camera = sensor.camera;
     std::string text = "{\n  \"format\": " + std::to_string(kFormat) + ",\n  \"name\": " + json_string(sensor.name) +
                        ",\n  \"description\": " + json_string(sensor.description) +

@@ -24,8 +24,8 @@ struct SensorDescription {
     std::map<std::string, std::string> sources;
 };
 
-// The keys of the figures that a file with these sections has, of "noise" and "active_stereo", with those of its
-// camera.
+// The keys of the figures that a file with these sections has, of "noise", "active_stereo" and "structured_light", with
+// those of its camera.
 std::vector<std::string> sensor_figures(const std::vector<std::string>& sections);
 
 // The names of those that are built in.

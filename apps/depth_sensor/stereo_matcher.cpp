@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string>
 
 #ifdef NEARPOSE_STEREO
 #include <mutex>
@@ -42,19 +43,22 @@ std::vector<float> match(const GreyImage& left, const GreyImage& right, int max_
     constexpr int kStep = 16;  // disparities are counted in sixteenths, and tried in multiples of so many
     constexpr int kGradientCap = 31;
     use_one_thread();
-    const int count = (max_disparity / kStep + 1) * kStep;
+    const int count = (max_disparity / kStep + 1) * kStep, more = right.width - left.width;
+    if (more < 0 || more > max_disparity || right.height != left.height)
+        throw std::invalid_argument("match: the right image must have the left one's rows and columns, and at most " +
+                                    std::to_string(max_disparity) + " columns more");
     const int area = rig.window_pixels * rig.window_pixels;
     const auto matcher = cv::StereoSGBM::create(
         0, count, rig.window_pixels, rig.penalty_step * area, rig.penalty_jump * area, rig.left_right_pixels,
         kGradientCap, rig.uniqueness_percent, rig.speckle_pixels, rig.speckle_range_pixels, cv::StereoSGBM::MODE_SGBM);
     cv::Mat found;
-    matcher->compute(padded(left, count), padded(right, count), found);
+    matcher->compute(padded(left, count), padded(right, count - more), found);
     std::vector<float> disparities;
     disparities.reserve(left.value.size());
     for (int v = 0; v < left.height; ++v) {
         for (int u = 0; u < left.width; ++u) {
             const float disparity = static_cast<float>(found.at<std::int16_t>(v, u + count)) / kStep;
-            disparities.push_back(disparity <= static_cast<float>(u) ? disparity : -1.0F);
+            disparities.push_back(disparity <= static_cast<float>(u + more) ? disparity : -1.0F);
         }
     }
     return disparities;

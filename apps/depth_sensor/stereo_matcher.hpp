@@ -20,8 +20,10 @@ bool stereo_is_built();
 void require_stereo();
 
 // Of each pixel of the left image: how far to the left its surface appears in the right one [pixels]; negative where
-// nothing matches, or where it would lie beyond the right image. Disparities in 0..max_disparity are tried. Serial; the
-// same images give the same bits. Throws as require_stereo does.
+// nothing matches, or where it would lie beyond the right image. That may be wider: its last columns are the left
+// image's. Disparities in 0..max_disparity are tried. Serial; the same images give the same bits. Throws as
+// require_stereo does, and std::invalid_argument where the right image is narrower, of another height, or wider by more
+// than max_disparity.
 std::vector<float> match(const GreyImage& left, const GreyImage& right, int max_disparity, const StereoRig& rig);
 
 }  // namespace nearpose::simulate

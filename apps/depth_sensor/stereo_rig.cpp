@@ -41,9 +41,14 @@ std::optional<StereoRig> scaled(std::optional<StereoRig> rig, double scale) {
     return rig;
 }
 
+std::string section_of(const StereoRig& rig) {
+    return rig.structured_light ? "structured_light" : "active_stereo";
+}
+
 void validate(const StereoRig& rig) {
-    const auto check = [](const char* field, double value, double low, double high) {
-        check_option(std::string("active_stereo.") + field, value, low, high);
+    const std::string section = section_of(rig) + ".";
+    const auto check = [&](const char* field, double value, double low, double high) {
+        check_option(section + field, value, low, high);
     };
     check("baseline_m", rig.baseline_m, 1e-3, 1.0);
     check("projector_m", rig.projector_m, -1.0, 1.0);
@@ -57,8 +62,12 @@ void validate(const StereoRig& rig) {
     check("rays_per_pixel", rig.rays_per_pixel, 1, 4);
     check("window_pixels", rig.window_pixels, 1, 51);
     if (rig.window_pixels % 2 == 0)
-        throw std::invalid_argument("active_stereo.window_pixels is " + std::to_string(rig.window_pixels) +
+        throw std::invalid_argument(section + "window_pixels is " + std::to_string(rig.window_pixels) +
                                     ", but must be odd: a window has a pixel in its middle");
+    if (rig.structured_light && rig.projector_m != rig.baseline_m)
+        throw std::invalid_argument(section + "projector_m is " + std::to_string(rig.projector_m) +
+                                    ", but must be baseline_m, " + std::to_string(rig.baseline_m) +
+                                    ": the pattern is seen from the projector");
     check("penalty_step", rig.penalty_step, 0, 100);
     check("penalty_jump", rig.penalty_jump, rig.penalty_step + 1, 101);
     check("uniqueness_percent", rig.uniqueness_percent, 0, 100);

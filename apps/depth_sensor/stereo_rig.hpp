@@ -1,5 +1,7 @@
-// A stereo camera with a dot projector: what it is made of. Depth is given in the left infrared camera, which is the
-// recording's camera; the right one and the projector stand along its x axis, with the same axes and intrinsics.
+// A stereo camera with a dot projector, or a structured-light camera: what it is made of. Depth is given in the left
+// infrared camera, which is the recording's camera; the right one and the projector stand along its x axis, with the
+// same axes and intrinsics. A structured-light camera has no right one: it matches its image with the known pattern,
+// as a camera at the projector would see it whatever the scene.
 #pragma once
 
 #include <optional>
@@ -22,8 +24,9 @@ Material material_of(const std::string& name);
 
 // Angles from the projector's axis are given as tangents: a width of 2.2 is 2.2 m at a distance of 1 m.
 struct StereoRig {
-    double baseline_m = 0.05;   // the right infrared camera is so far to the right of the left one
-    double projector_m = 0.03;  // so far to the right stands the projector
+    double baseline_m = 0.05;       // the right infrared camera is so far to the right of the left one
+    double projector_m = 0.03;      // so far to the right stands the projector
+    bool structured_light = false;  // the pattern takes the right image's place; then projector_m is baseline_m
     // The projector's dots: so many, in random places of a lattice over its field of view.
     int dots = 20000;
     double dot_sigma_tan = 0.0022;  // of a dot's Gaussian profile
@@ -44,6 +47,9 @@ struct StereoRig {
     double min_range_m = 0.175;    // nearer and farther surfaces have no depth
     double max_range_m = 4.0;
 };
+
+// The section of a sensor file that describes it: active_stereo or structured_light.
+std::string section_of(const StereoRig& rig);
 
 // Throws std::invalid_argument naming field, value and bound.
 void validate(const StereoRig& rig);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "apps/base/simulation_draws.hpp"
@@ -37,28 +38,32 @@ PinholeCamera refined(const PinholeCamera& camera, int side) {
             camera.fy * side,    (camera.cx + 0.5) * side - 0.5, (camera.cy + 0.5) * side - 0.5};
 }
 
-// Light in every pixel of the camera that stands `right_m` to the right of the left one: the mean of its rays.
+// Light in every pixel: the mean of what `light_of(u, v)` gives for the pixels of the refined camera.
+template <typename LightOf>
+std::vector<float> mean_of_rays(const PinholeCamera& camera, int side, const LightOf& light_of) {
+    const float share = 1.0F / static_cast<float>(side * side);
+    std::vector<float> light(static_cast<std::size_t>(camera.width) * camera.height, 0.0F);
+    for (int v = 0; v < camera.height * side; ++v)
+        for (int u = 0; u < camera.width * side; ++u)
+            light[static_cast<std::size_t>(v / side) * camera.width + u / side] +=
+                share * static_cast<float>(light_of(u, v));
+    return light;
+}
+
+// Light in every pixel of the camera that stands `right_m` to the right of the left one.
 std::vector<float> light_in(double right_m, const RenderFrom& render, const PinholeCamera& camera, int rays_per_pixel,
                             const Lighting& lighting, const Material& material, int num_parts) {
     const PinholeCamera rays = refined(camera, rays_per_pixel);
     const Eigen::Vector3d position(right_m, 0.0, 0.0);
     const RenderedImage image = render({Eigen::Quaterniond::Identity(), -position}, rays);
-    const float share = 1.0F / static_cast<float>(rays_per_pixel * rays_per_pixel);
-    std::vector<float> light(static_cast<std::size_t>(camera.width) * camera.height, 0.0F);
-    for (int v = 0; v < rays.height; ++v) {
-        for (int u = 0; u < rays.width; ++u) {
-            const std::size_t ray = static_cast<std::size_t>(v) * rays.width + u;
-            const double depth_m = image.depth.depth_m[ray];
-            if (depth_m == 0.0) continue;
-            const Eigen::Vector3d point = depth_m * rays.ray(u, v) + position;
-            const Material& surface = image.object[ray] < num_parts ? material : kGreyPaint;
-            const double thrown =
-                brightness(point, image.normals_in_camera[ray].cast<double>(), position, surface, lighting);
-            light[static_cast<std::size_t>(v / rays_per_pixel) * camera.width + u / rays_per_pixel] +=
-                share * static_cast<float>(thrown);
-        }
-    }
-    return light;
+    return mean_of_rays(camera, rays_per_pixel, [&](int u, int v) {
+        const std::size_t ray = static_cast<std::size_t>(v) * rays.width + u;
+        const double depth_m = image.depth.depth_m[ray];
+        if (depth_m == 0.0) return 0.0;
+        const Eigen::Vector3d point = depth_m * rays.ray(u, v) + position;
+        const Material& surface = image.object[ray] < num_parts ? material : kGreyPaint;
+        return brightness(point, image.normals_in_camera[ray].cast<double>(), position, surface, lighting);
+    });
 }
 
 // Weights of a Gaussian, from the middle on; with those of both sides they sum to 1.
@@ -106,6 +111,11 @@ double exposure(const std::vector<float>& light) {
     return kLevel / static_cast<double>(*place);
 }
 
+// The largest that is tried [pixels].
+int max_disparity(const PinholeCamera& camera, const StereoRig& rig) {
+    return std::min(camera.width, static_cast<int>(std::ceil(camera.fx * rig.baseline_m / rig.min_range_m)));
+}
+
 // Grey levels with their noise.
 GreyImage exposed(const std::vector<float>& light, double gain, const PinholeCamera& camera, double sigma_grey,
                   std::uint64_t seed, std::uint64_t frame, RandomPurpose purpose) {
@@ -116,6 +126,21 @@ GreyImage exposed(const std::vector<float>& light, double gain, const PinholeCam
             std::lround(std::clamp(gain * static_cast<double>(light[pixel]) + noise, 0.0, 255.0)));
     }
     return image;
+}
+
+// The pattern as a camera at the projector would see it, on a surface that throws all of it back.
+GreyImage reference_image(const PinholeCamera& camera, const StereoRig& rig, const std::vector<float>& kernel,
+                          std::uint64_t seed) {
+    const int more = max_disparity(camera, rig);
+    const PinholeCamera wide{camera.width + more, camera.height, camera.fx, camera.fy, camera.cx + more, camera.cy};
+    const PinholeCamera rays = refined(wide, rig.rays_per_pixel);
+    const DotPattern pattern(rig, seed);
+    const std::vector<float> sharp = mean_of_rays(wide, rig.rays_per_pixel, [&](int u, int v) {
+        const Eigen::Vector3d ray = rays.ray(u, v);
+        return pattern.at(ray.x(), ray.y());
+    });
+    const std::vector<float> light = blurred_along(blurred_along(sharp, wide, true, kernel), wide, false, kernel);
+    return exposed(light, exposure(light), wide, 0.0, seed, 0, kRightInfraredDraw);
 }
 
 }  // namespace
@@ -129,16 +154,17 @@ InfraredPair infrared_images(const RenderFrom& render, const PinholeCamera& came
             light_in(right_m, render, camera, rig.rays_per_pixel, lighting, material, num_parts);
         return blurred_along(blurred_along(light, camera, true, kernel), camera, false, kernel);
     };
-    const std::vector<float> left = seen_from(0.0), right = seen_from(rig.baseline_m);
+    const std::vector<float> left = seen_from(0.0);
     const double gain = exposure(left);  // of both, as the cameras' common exposure
-    return {exposed(left, gain, camera, rig.infrared_sigma_grey, seed, frame, kLeftInfraredDraw),
-            exposed(right, gain, camera, rig.infrared_sigma_grey, seed, frame, kRightInfraredDraw)};
+    GreyImage left_image = exposed(left, gain, camera, rig.infrared_sigma_grey, seed, frame, kLeftInfraredDraw);
+    if (rig.structured_light) return {std::move(left_image), reference_image(camera, rig, kernel, seed)};
+    return {std::move(left_image),
+            exposed(seen_from(rig.baseline_m), gain, camera, rig.infrared_sigma_grey, seed, frame, kRightInfraredDraw)};
 }
 
 DepthImage depth_of(const InfraredPair& images, const PinholeCamera& camera, const StereoRig& rig) {
     const double pixels_times_m = camera.fx * rig.baseline_m;
-    const int max_disparity = std::min(camera.width, static_cast<int>(std::ceil(pixels_times_m / rig.min_range_m)));
-    const std::vector<float> disparities = match(images.left, images.right, max_disparity, rig);
+    const std::vector<float> disparities = match(images.left, images.right, max_disparity(camera, rig), rig);
     DepthImage depth{camera.width, camera.height, std::vector<float>(disparities.size(), 0.0F)};
     for (std::size_t pixel = 0; pixel < disparities.size(); ++pixel) {
         if (!(disparities[pixel] > 0.0F)) continue;

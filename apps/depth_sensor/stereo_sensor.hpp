@@ -1,5 +1,6 @@
-// Depth as an active stereo camera makes it: two infrared images of a scene with projected dots, matched. What real
-// sensors do follows from it: one value for a window, edges that grow, shadows, holes, errors that neighbours share.
+// Depth as an active stereo camera makes it: two infrared images of a scene with projected dots, matched. Or as a
+// structured-light camera does: one image, matched with the known pattern of dots. What real sensors do follows from
+// it: one value for a window, edges that grow, shadows, holes, errors that neighbours share.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +14,8 @@
 namespace nearpose::simulate {
 
 struct InfraredPair {
+    // Of structured light the right one is the pattern without noise, as a camera at the projector would see it; it has
+    // as many columns more on its left as disparities are tried.
     GreyImage left, right;
 };
 

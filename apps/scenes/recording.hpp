@@ -35,8 +35,8 @@ struct RecordingOptions {
     PinholeCamera camera = default_camera();
     double depth_scale_mm = 0.1;  // millimetres per count: depth is rounded to it
     SensorNoise sensor;           // already scaled
-    // Depth by matching two infrared images instead; of the sensor above the range alone counts. The camera above is
-    // the left infrared camera, whatever its size and focal length.
+    // Depth by matching infrared images instead; of the sensor above the range alone counts. The camera above is the
+    // (left) infrared camera, whatever its size and focal length.
     std::optional<StereoRig> stereo;
     std::string material = "cast_iron";  // of the part and its copies, as the infrared cameras see it
     bool keep_infrared = false;          // in SimulatedFrame::infrared

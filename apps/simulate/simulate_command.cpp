@@ -202,8 +202,8 @@ void add_sensor_options(CLI::App& command, SimulateOptions& options) {
     for (const std::string& name : simulate::sensor_names()) names += (names.empty() ? "" : ", ") + name;
     command.add_option("--sensor", options.sensor,
                        "Sets camera, depth scale and noise: " + names +
-                           ", or a JSON file (stereo_...: matches two rendered images); without it a close-range "
-                           "stereo camera, 640x480 with fx = fy = 600 pixels, 0.1 mm a count");
+                           ", or a JSON file (stereo_... and structured_...: match rendered images); without it a "
+                           "close-range stereo camera, 640x480 with fx = fy = 600 pixels, 0.1 mm a count");
     command.add_option("--camera", options.camera, "camera.json, instead of the sensor's own camera and depth scale")
         ->check(CLI::ExistingFile);
     command.add_option("--noise-scale", options.noise_scale, "Times the sensor's faults; 0: exact depth")
@@ -213,7 +213,8 @@ void add_sensor_options(CLI::App& command, SimulateOptions& options) {
                     "What the part is made of, for sensors that match infrared images; else cast_iron")
         ->check(CLI::IsMember(simulate::material_names()));
     command.add_flag("--save-infrared", options.save_infrared,
-                     "Also write the images that such a sensor matches, as infrared_left and infrared_right");
+                     "Also write the images that such a sensor matches, as infrared_left and infrared_right; of "
+                     "structured light the right one is the pattern");
     command.add_option("--drop-frames", options.drop_frames, "Fraction of the frames that are lost, never the first")
         ->check(CLI::Range(0.0, 0.95));
     command.add_option("--mask-grow", options.mask.grow_pixels, "Given mask: pixels to dilate, negative: to erode")

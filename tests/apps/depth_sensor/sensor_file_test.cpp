@@ -69,13 +69,15 @@ TEST(SensorFile, ThoseOfExperimentsDifferFromCloseStereoInOneFigure) {
 }
 
 TEST(SensorFile, EveryFigureOfTheBuiltInOnesHasItsSource) {
-    EXPECT_EQ(sensor_names().size(), 9u);
+    EXPECT_EQ(sensor_names().size(), 10u);
     for (const std::string& name : sensor_names()) {
         const SensorDescription sensor = read_sensor(name);
         EXPECT_EQ(sensor.name, name);
-        const bool is_stereo = name.find("stereo_") == 0;
-        EXPECT_EQ(sensor.stereo.has_value(), is_stereo);
-        for (const std::string& key : sensor_figures({is_stereo ? "active_stereo" : "noise"})) {
+        const bool is_stereo = name.find("stereo_") == 0, is_light = name.find("structured_") == 0;
+        EXPECT_EQ(sensor.stereo.has_value(), is_stereo || is_light);
+        const std::string section = sensor.stereo ? section_of(*sensor.stereo) : "noise";
+        EXPECT_EQ(section == "structured_light", is_light);
+        for (const std::string& key : sensor_figures({section})) {
             EXPECT_TRUE(sensor.sources.count(key) == 1 && sensor.sources.at(key).size() > 10) << name << " " << key;
         }
     }
@@ -131,6 +133,34 @@ TEST(SensorFile, OfActiveStereoRefusesBadFigures) {
     has(problem_of(replaced(good, "\"dots\": 20000", "\"spots\": 20000")), "active_stereo/spots: unknown key");
     has(problem_of(replaced(good, "\"max_range_m\": 4.0", "\"max_range_m\": 0.1")), "max_range_m is 0.1");
     has(problem_of(replaced(good, "\"penalty_jump\": 8", "\"penalty_jump\": 2")), "active_stereo.penalty_jump is 2");
+}
+
+TEST(SensorFile, OfStructuredLightRefusesBadFigures) {
+    const std::string good = data_set::read_whole_file("apps/sensors/structured_carmine.json", 1 << 20);
+    EXPECT_EQ(problem_of(good), "");
+    const SensorDescription sensor = read_sensor("structured_carmine");
+    EXPECT_EQ(sensor.stereo->projector_m, sensor.stereo->baseline_m);
+    const auto has = [](const std::string& text, const std::string& part) {
+        EXPECT_NE(text.find("sensor.json"), std::string::npos) << text;
+        EXPECT_NE(text.find(part), std::string::npos) << text;
+    };
+    has(problem_of(replaced(good, "\"baseline_m\": 0.075", "\"baseline_m\": 2")),
+        "structured_light.baseline_m is 2, but must be in 0.001..1");
+    has(problem_of(replaced(good, "\"baseline_m\": 0.075", "\"projector_m\": 0.075")),
+        "structured_light/projector_m: unknown key");
+    has(problem_of(replaced(good, "\"dots\": 35000,", "")), "structured_light: lacks the key \"dots\"");
+    has(problem_of(replaced(good, "\"window_pixels\": 7", "\"window_pixels\": 6")),
+        "structured_light.window_pixels is 6, but must be odd");
+    has(problem_of(replaced(good, "\"structured_light.dots\"", "\"active_stereo.dots\"")),
+        "sources/active_stereo.dots: unknown key");
+    has(problem_of(replaced(good, "\"structured_light\": {", "\"active_stereo\": {}, \"structured_light\": {")),
+        "has active_stereo and structured_light, but must have one of them");
+    try {
+        write_sensor(test_file(""), sensor);
+        FAIL();
+    } catch (const std::invalid_argument& error) {
+        EXPECT_NE(std::string(error.what()).find("structured_light cannot be written"), std::string::npos);
+    }
 }
 
 TEST(SensorFile, OfActiveStereoMayAlsoHoldTheNoiseThatItsDepthIsLike) {

@@ -78,6 +78,11 @@ TEST(SimulateCommand, InfraredImagesAreOfSensorsThatMatchThem) {
     ASSERT_EQ(stereo.exit_code, 0) << stereo.err;
     for (const char* name : {"depth", "infrared_left", "infrared_right"})
         EXPECT_EQ(data_set::read_png_size(folder / "set/test/000001" / name / "000000.png").width, 96) << name;
+    // The pattern is known beyond the image, by the largest disparity: 90 pixels * 0.075 m / 0.35 m.
+    const Outcome light = run_nearpose(command + " --force --sensor structured_carmine --save-infrared");
+    ASSERT_EQ(light.exit_code, 0) << light.err;
+    EXPECT_EQ(data_set::read_png_size(folder / "set/test/000001/depth/000000.png").width, 96);
+    EXPECT_EQ(data_set::read_png_size(folder / "set/test/000001/infrared_right/000000.png").width, 96 + 20);
 }
 
 // A square column: four turns about its axis and half turns about axes across.
