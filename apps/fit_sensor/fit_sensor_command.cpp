@@ -12,6 +12,8 @@
 #include "apps/base/number_text.hpp"
 #include "apps/data_set/bop_scene.hpp"
 #include "apps/depth_sensor/sensor_file.hpp"
+#include "apps/fit_sensor/column.hpp"
+#include "apps/fit_sensor/edge_recording.hpp"
 #include "apps/fit_sensor/sensor_fit.hpp"
 
 namespace nearpose::program {
@@ -28,6 +30,7 @@ struct FitSensorOptions {
     std::string name;
     std::vector<int> region;  // U V W H [pixels]
     std::optional<int> first, last;
+    EdgeRecording edges;
 };
 
 struct Recording {
@@ -66,10 +69,6 @@ std::optional<PixelBox> region_of(const FitSensorOptions& command, const Pinhole
                      std::to_string(camera.height) + " pixels");
     }
     return PixelBox{u, v, u + width, v + height};
-}
-
-std::string column(const std::string& text, std::size_t width) {
-    return std::string(text.size() < width ? width - text.size() : 1, ' ') + text;
 }
 
 double degrees(double radians) {
@@ -133,6 +132,12 @@ std::string figures_text(const SensorFit& fit, const std::string& base) {
             text += &named.figure == &fit.bias_sigma_m ? "  (in the noise)\n" : "  (kept from " + base + ")\n";
         }
     }
+    for (const NamedFigure& named : {NamedFigure{"correlation_rows_pixels", "", fit.row_correlation_pixels},
+                                     NamedFigure{"correlation_columns_pixels", "", fit.column_correlation_pixels}}) {
+        if (!named.figure.fitted) continue;
+        text += std::string(named.key) + " = " + short_number(named.figure.value) + " pixels  (" +
+                interval_text(named.figure) + ")\n";
+    }
     return text;
 }
 
@@ -149,12 +154,27 @@ std::string origin_of(const SensorFit& fit) {
            span_text(near_m, far_m, 2) + " m, up to " + format_fixed(degrees(steepest_rad), 0) + " degrees";
 }
 
+// A noise section has no figure for it.
+std::string growth_sentence(const std::optional<MeasuredEdges>& edges) {
+    std::string text;
+    if (!edges) return text;
+    const auto add = [&](const FittedFigure& growth, const char* direction) {
+        if (!growth.fitted) return;
+        text += " Edges grow by " + format_fixed(growth.value, 2) + " pixels along " + direction + " (" +
+                interval_text(growth) + "), which is not simulated.";
+    };
+    add(edges->growth.along_rows, "rows");
+    add(edges->growth.along_columns, "columns");
+    return text;
+}
+
 simulate::SensorDescription description_of(const FitSensorOptions& command, const simulate::SensorDescription& base,
-                                           const Recording& recording, const SensorFit& fit) {
+                                           const Recording& recording, const SensorFit& fit,
+                                           const std::optional<MeasuredEdges>& edges) {
     simulate::SensorDescription sensor = base;
     const std::string origin = origin_of(fit);
     sensor.name = command.name.empty() ? command.out.stem().string() : command.name;
-    sensor.description = "Axial noise " + origin + "; all else as " + base.name + ".";
+    sensor.description = "Axial noise " + origin + "; all else as " + base.name + "." + growth_sentence(edges);
     sensor.noise = fit.noise;
     for (const NamedFigure& named : figures_of(fit)) {
         if (named.figure.fitted) {
@@ -170,23 +190,44 @@ simulate::SensorDescription description_of(const FitSensorOptions& command, cons
     return sensor;
 }
 
+// nullopt where no recording of edges was named.
+std::optional<MeasuredEdges> edges_of(const FitSensorOptions& command, const SharedOptions& shared) {
+    if (command.edges.scene.empty() != command.edges.model.models.empty())
+        throw BadUse("--edges and --models belong together: edges grow beside those of a model at its true pose");
+    if (command.edges.scene.empty()) return std::nullopt;
+    return measure_edges(command.edges, shared);
+}
+
+int exit_code(int unread) {
+    if (unread == 0) return kSuccess;
+    print_error(std::to_string(unread) + " frames could not be read");
+    return kFramesUnread;
+}
+
 int fit_sensor(const FitSensorOptions& command, const SharedOptions& shared) {
     const simulate::SensorDescription base = simulate::read_sensor(command.base);
+    if (base.stereo)
+        throw BadUse("--base " + base.name +
+                     ": must be a sensor of simple noise, which alone is fitted; the window of " +
+                     section_of(*base.stereo) + " is found by comparing edge growth with that of its simulation");
+    const std::optional<MeasuredEdges> edges = edges_of(command, shared);
     const Recording recording = read_recording(command);
     simulate::SensorFitOptions options;
     options.region = region_of(command, recording.frames.front().camera);
     const SensorFit fit = simulate::fit_sensor(recording.frames, base.noise, 1e-3 * recording.depth_scale_mm, options);
-    simulate::write_sensor(command.out, description_of(command, base, recording, fit));
-    print(table_of(fit) + "\n" + figures_text(fit, base.name));
+    simulate::write_sensor(command.out, description_of(command, base, recording, fit, edges));
+    print(table_of(fit) + "\n" + figures_text(fit, base.name) + (edges ? "\n" + edges_text(*edges) : ""));
     if (fit.misfit > 2.0) {
         print_notice("the sigmas depart from the fitted form by " + format_fixed(fit.misfit, 1) +
                          " times their errors; the intervals are widened by as much",
                      shared.quiet);
     }
     for (const std::string& note : fit.notes) print_notice(note, shared.quiet);
-    if (recording.unread == 0) return kSuccess;
-    print_error(std::to_string(recording.unread) + " frames could not be read");
-    return kFramesUnread;
+    if (!edges)
+        print_notice("edge growth could not be determined: a flat wall has no edges; see --edges", shared.quiet);
+    for (const std::string& note : edges ? edges->growth.notes : std::vector<std::string>{})
+        print_notice(note, shared.quiet);
+    return exit_code(recording.unread + (edges ? edges->unread : 0));
 }
 
 }  // namespace
@@ -202,6 +243,10 @@ void add_fit_sensor_command(CLI::App& app, const SharedOptions& shared, Run& run
     command->add_option("--base", options->base, "Sensor whose other figures are kept: built-in name or file");
     command->add_option("--out", options->out, "Sensor file to write")->required();
     command->add_option("--name", options->name, "The sensor's name [the file's]");
+    command->add_option("--edges", options->edges.scene,
+                        "BOP scene folder with scene_gt.json: an object before something farther; measures by how much "
+                        "its edges grow");
+    add_bop_model_options(*command, options->edges.model);
     command->footer(
         "Point the camera at a flat wall from several distances and angles, and hold it still for some frames each.");
     command->callback([options, &shared, &run] { run = [options, &shared] { return fit_sensor(*options, shared); }; });

@@ -99,26 +99,34 @@ Wall wall_of(std::span<const WallFrame> frames, const WallSensor& sensor, const 
     return wall;
 }
 
+// From the mean autocorrelation and half of its 95 % interval.
+FittedFigure correlation_figure(double mean, double error) {
+    FittedFigure figure{correlation_for(mean), correlation_for(mean - error), correlation_for(mean + error), true};
+    if (mean < error) figure.value = figure.low = 0.0;  // not told from independent pixels
+    return figure;
+}
+
 // The correlation, and from it how many independent pixels each cell has.
-FittedFigure count_independent(Measured& measured) {
-    double mean = 0.0, freedom = 0.0;
-    for (const double product : measured.products) {
-        if (measured.squares > 0.0) mean += product / measured.squares / kLags;
+void count_independent(Measured& measured, SensorFit& fit) {
+    double rows = 0.0, columns = 0.0, freedom = 0.0;
+    for (int i = 0; i < kLags && measured.squares > 0.0; ++i) {
+        rows += measured.row_products[static_cast<std::size_t>(i)] / measured.squares / kLags;
+        columns += measured.column_products[static_cast<std::size_t>(i)] / measured.squares / kLags;
     }
     for (const NoiseCell& cell : measured.cells) freedom += cell.freedom;
-    FittedFigure correlation{.value = correlation_for(mean), .fitted = measured.squares > 0.0};
-    const double growth = variance_growth(correlation.value);
+    const double mean = 0.5 * (rows + columns), growth = variance_growth(correlation_for(mean));
     const double error = 1.96 / std::sqrt(std::max(1.0, freedom / growth));
-    correlation.low = correlation_for(mean - error);
-    correlation.high = correlation_for(mean + error);
-    if (mean < error) correlation.value = correlation.low = 0.0;  // not told from independent pixels
+    fit.correlation_pixels = correlation_figure(mean, error);
+    fit.row_correlation_pixels = correlation_figure(rows, error);
+    fit.column_correlation_pixels = correlation_figure(columns, error);
+    for (FittedFigure* figure : {&fit.correlation_pixels, &fit.row_correlation_pixels, &fit.column_correlation_pixels})
+        figure->fitted = measured.squares > 0.0;
     for (NoiseCell& cell : measured.cells) cell.effective = cell.freedom / growth;
     std::erase_if(measured.cells, [](const NoiseCell& cell) { return cell.effective < kLeastEffective; });
     if (measured.cells.empty()) {
         throw std::runtime_error("no range and angle of the wall has " + format_fixed(kLeastEffective, 0) +
                                  " independent pixels with depth; use more frames or a larger --region");
     }
-    return correlation;
 }
 
 // The field of fixed error is smooth: nodes joined by a bicubic B-spline, whose autocorrelation is nearly a Gaussian of
@@ -206,7 +214,7 @@ SensorFit fit_sensor(std::span<const WallFrame> frames, const SensorNoise& base,
     // Again with the figures found: they tell better what is an outlier.
     for (int round = 0; round < 2; ++round) {
         Measured measured = measure(wall, sensor);
-        fit.correlation_pixels = count_independent(measured);
+        count_independent(measured, fit);
         fit.bias_sigma_m = bias_figure(wall, measured, base);
         const AxialFigures figures = fit_axial_figures(measured.cells, base, determined(measured.cells));
         fit.sigma_floor_m = figures.floor_m;

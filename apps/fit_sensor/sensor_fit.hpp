@@ -59,9 +59,10 @@ struct WallGroup {
 struct SensorFit {
     SensorNoise noise;  // the base with the fitted figures
     FittedFigure sigma_floor_m, sigma_per_square_metre, angle_factor, correlation_pixels, bias_sigma_m;
-    int frames = 0;          // that were used
-    bool separated = false;  // noise from fixed error
-    double misfit = 0.0;     // root of chi^2 per degree of freedom of the cells; intervals are widened where above 1
+    FittedFigure row_correlation_pixels, column_correlation_pixels;  // correlation_pixels of each direction alone
+    int frames = 0;                                                  // that were used
+    bool separated = false;                                          // noise from fixed error
+    double misfit = 0.0;  // root of chi^2 per degree of freedom of the cells; intervals are widened where above 1
     std::vector<NoiseCell> cells;
     std::vector<WallGroup> groups;
     std::vector<std::string> notes;  // what could not be determined, and what was left out

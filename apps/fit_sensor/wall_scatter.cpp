@@ -71,8 +71,9 @@ void add_autocorrelation(const Wall& wall, const std::vector<double>& deviations
             if (!all) continue;
             measured.squares += deviations[here] * deviations[here];
             for (int lag = 1; lag <= kLags; ++lag) {
-                measured.products[static_cast<std::size_t>(lag - 1)] +=
-                    0.5 * deviations[here] * (deviations[here + lag] + deviations[here + lag * width]);
+                const auto index = static_cast<std::size_t>(lag - 1);
+                measured.row_products[index] += deviations[here] * deviations[here + lag];
+                measured.column_products[index] += deviations[here] * deviations[here + lag * width];
             }
         }
     }

@@ -39,8 +39,8 @@ struct Wall {
 struct Measured {
     std::vector<NoiseCell> cells;
     std::vector<WallGroup> groups;
-    std::array<double, kLags> products{};  // of neighbours' deviations
-    double squares = 0.0;                  // of as many deviations
+    std::array<double, kLags> row_products{}, column_products{};  // of neighbours' deviations
+    double squares = 0.0;                                         // of as many deviations
     double bias_square_sum = 0.0;
     double bias_pixels = 0.0;
 };

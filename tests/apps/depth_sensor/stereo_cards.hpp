@@ -11,9 +11,9 @@ namespace nearpose::simulate {
 
 inline const PinholeCamera kCamera{320, 240, 300.0, 300.0, 159.5, 119.5};
 
-// From x = left_m to right_m in the left camera's axes, at all heights.
+// From x = left_m to right_m and y = upper_m to lower_m in the left camera's axes.
 struct Card {
-    double depth_m, left_m = -10.0, right_m = 10.0;
+    double depth_m, left_m = -10.0, right_m = 10.0, upper_m = -10.0, lower_m = 10.0;
 };
 
 inline RenderFrom cards(const std::vector<Card>& all) {
@@ -26,8 +26,10 @@ inline RenderFrom cards(const std::vector<Card>& all) {
             const int u = static_cast<int>(pixel) % camera.width, v = static_cast<int>(pixel) / camera.width;
             for (const Card& card : all) {
                 const double x_m = card.depth_m * camera.ray(u, v).x() - viewpoint_from_left.translation.x();
+                const double y_m = card.depth_m * camera.ray(u, v).y();
                 float& depth_m = image.depth.depth_m[pixel];
-                if (x_m < card.left_m || x_m > card.right_m || (depth_m > 0.0F && card.depth_m > depth_m)) continue;
+                if (x_m < card.left_m || x_m > card.right_m || y_m < card.upper_m || y_m > card.lower_m) continue;
+                if (depth_m > 0.0F && card.depth_m > depth_m) continue;
                 depth_m = static_cast<float>(card.depth_m);
                 image.object[pixel] = 0;
                 image.normals_in_camera[pixel] = -Eigen::Vector3f::UnitZ();

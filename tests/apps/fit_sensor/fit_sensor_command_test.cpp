@@ -88,8 +88,40 @@ TEST(FitSensor, SaysWhatCouldNotBeDetermined) {
                                          " --out " + (folder / "mine.json").string());
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_TRUE(contains(outcome.err, "one distance")) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "edge growth could not be determined")) << outcome.err;
     EXPECT_TRUE(contains(outcome.out, "kept from ideal")) << outcome.out;
     EXPECT_TRUE(contains(outcome.out, " 1200 ")) << outcome.out;
+}
+
+TEST(FitSensor, MeasuresEdgesOfAnObjectAtItsTruePose) {
+    const std::filesystem::path folder = new_folder();
+    const auto scene = write_walls(folder, wall_noise(), {0.3, 0.6, 1.2});
+    std::string box;
+    for (int i = 0; i < 8; ++i) {
+        const auto corner = [&](int bit, int size) { return std::to_string((i >> bit & 1) * size) + " "; };
+        box += "v " + corner(0, 260) + corner(1, 200) + corner(2, 120) + "\n";
+    }
+    for (const char* face : {"1 2 4 3", "5 7 8 6", "1 5 6 2", "3 4 8 7", "1 3 7 5", "2 6 8 4"})
+        box += "f " + std::string(face) + "\n";
+    write_text(folder / "box.obj", box);
+    const Outcome simulated = run_nearpose(
+        "simulate --quiet --frames 4 --scenario handheld --sensor d435 --no-symmetries --unit mm --model " +
+        (folder / "box.obj").string() + " --out " + (folder / "box").string());
+    ASSERT_EQ(simulated.exit_code, 0) << simulated.err;
+    const std::string command = "fit-sensor --base ideal --scene " + scene.string() + " --out " +
+                                (folder / "mine.json").string() + " --edges " + (folder / "box/test/000001").string();
+    const Outcome outcome = run_nearpose(command + " --models " + (folder / "box/models").string() + " --object 1");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    for (const char* part : {"correlation_rows_pixels = ", "in 4 frames", "growth_pixels", "scatter_pixels", "lower",
+                             "edge_growth_columns_pixels = ", "edge_growth_rows_pixels: not determined"}) {
+        EXPECT_TRUE(contains(outcome.out, part)) << part << "\n" << outcome.out;
+    }
+    EXPECT_TRUE(contains(outcome.err, "edge growth on the left side could not be determined")) << outcome.err;
+    EXPECT_TRUE(contains(simulate::read_sensor((folder / "mine.json").string()).description, "pixels along columns"));
+    const Outcome no_models = run_nearpose(command);
+    EXPECT_EQ(no_models.exit_code, 2);
+    EXPECT_TRUE(contains(no_models.err, "--edges and --models belong together")) << no_models.err;
+    EXPECT_EQ(run_nearpose(command + " --models " + (folder / "box/models").string() + " --object 9").exit_code, 1);
 }
 
 TEST(FitSensor, RefusesAStepAndBadUse) {
@@ -106,6 +138,9 @@ TEST(FitSensor, RefusesAStepAndBadUse) {
     EXPECT_EQ(outside.exit_code, 2);
     EXPECT_TRUE(contains(outside.err, "120 x 90")) << outside.err;
     EXPECT_EQ(run_nearpose(command + " --region 60 0 60").exit_code, 2);
+    const Outcome stereo = run_nearpose(command + " --base stereo_d435");
+    EXPECT_EQ(stereo.exit_code, 2);
+    EXPECT_TRUE(contains(stereo.err, "--base stereo_d435: must be a sensor of simple noise")) << stereo.err;
     EXPECT_EQ(run_nearpose(command + " --region 0 0 50 90").exit_code, 0);
 }
 

@@ -231,6 +231,23 @@ TEST(SensorFit, WhatTheBaseExplainsIsNotLaidToAxialNoise) {
     EXPECT_LT(fit.noise.angle_factor, 0.03);
 }
 
+TEST(SensorFit, CorrelationIsMeasuredAlongRowsAndColumns) {
+    SensorNoise truth = axial(0.001, 0.0, 0.0);
+    truth.correlation_pixels = 1.5;
+    const SensorFit both = fit_sensor(record(truth, {{0.4, 0.0}, {0.8, 0.0}}, 3), truth, 0.0);
+    EXPECT_NEAR(both.row_correlation_pixels.value, 1.5, 0.3 * 1.5);
+    EXPECT_NEAR(both.column_correlation_pixels.value, 1.5, 0.3 * 1.5);
+    expect_within(both.row_correlation_pixels, 1.5);
+    expect_within(both.column_correlation_pixels, 1.5);
+    std::vector<WallFrame> frames = record(axial(0.001, 0.0, 0.0), {{0.4, 0.0}, {0.8, 0.0}}, 3);
+    for (WallFrame& frame : frames)  // each pixel shares half of its noise with the next in the row
+        for (std::size_t i = 0; i + 1 < frame.depth.depth_m.size(); ++i)
+            frame.depth.depth_m[i] = 0.5F * (frame.depth.depth_m[i] + frame.depth.depth_m[i + 1]);
+    const SensorFit rows = fit_sensor(frames, truth, 0.0);
+    EXPECT_GT(rows.row_correlation_pixels.low, 0.3);
+    EXPECT_LT(rows.column_correlation_pixels.high, 0.35);
+}
+
 TEST(SensorFit, RefusesWhatIsNoFlatWall) {
     const SensorNoise noise = axial(0.0005, 0.0015, 0.0);
     const DepthSensor sensor(noise, kCamera, 4);
