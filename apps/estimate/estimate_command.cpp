@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <numbers>
+#include <utility>
 
 #include "apps/base/console.hpp"
 #include "apps/base/number_text.hpp"
@@ -113,9 +114,10 @@ std::optional<Pose> control_of(const FrameSource& source, std::size_t index) {
     return *now * before->inverse();
 }
 
-// What a frame that could be read had to offer.
-std::string why_unseen(const FrameData& data, const Observation& observation) {
+// What a frame that could be read had to offer. The observation has taken its image over, so it is read again.
+std::string why_unseen(const FrameSource& source, std::size_t index, const Observation& observation) {
     if (observation.num_candidates() > 0) return std::to_string(observation.num_candidates()) + " measured points";
+    const FrameData data = source.load(index);
     std::vector<float> depths_m;
     for (std::size_t i = 0; i < data.depth.depth_m.size(); ++i) {
         const bool wanted = !data.mask || data.mask->value[i] != 0;
@@ -144,7 +146,7 @@ void run_frame(const EstimateOptions& options, const SharedOptions& shared, cons
         report.error = error.what();
     }
     const auto begin = std::chrono::steady_clock::now();
-    const Observation observation = observe_frame(frame, data);
+    const Observation observation = observe_frame(frame, std::move(data));
     const UpdateResult result =
         estimator.update(observation, options.no_control ? std::nullopt : control_of(source, index));
     report.time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -156,7 +158,7 @@ void run_frame(const EstimateOptions& options, const SharedOptions& shared, cons
         ++tally.unread;
         print_error(name + ": " + report.error + consequence);
     } else if (result.status != UpdateStatus::kEstimated) {
-        print_notice(name + ": the object is not seen (" + why_unseen(data, observation) + ")" + consequence,
+        print_notice(name + ": the object is not seen (" + why_unseen(source, index, observation) + ")" + consequence,
                      shared.quiet);
     }
     if (result.status == UpdateStatus::kEstimated) ++tally.seen;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "apps/base/number_text.hpp"
 #include "apps/data_set/bop_masks.hpp"
@@ -135,8 +136,8 @@ std::unique_ptr<FrameSource> open_cloud_source(const std::filesystem::path& fold
     return std::make_unique<CloudSource>(folder, camera_json, options, segmented);
 }
 
-Observation observe_frame(const FrameInfo& frame, const FrameData& data) {
-    if (!data.depth.depth_m.empty()) return make_observation(data.depth, frame.camera, data.mask);
+Observation observe_frame(const FrameInfo& frame, FrameData data) {
+    if (!data.depth.depth_m.empty()) return make_observation(std::move(data.depth), frame.camera, data.mask);
     if (!data.points_in_camera.empty()) return make_observation(data.points_in_camera, frame.camera);
     return make_observation(project({}, frame.camera), frame.camera, std::nullopt);
 }

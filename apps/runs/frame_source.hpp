@@ -63,6 +63,6 @@ std::unique_ptr<FrameSource> open_cloud_source(const std::filesystem::path& fold
                                                const data_set::SceneOptions& options, bool segmented);
 
 // The decoded frame as the estimator takes it. An empty FrameData gives an observation in which nothing is seen.
-Observation observe_frame(const FrameInfo& frame, const FrameData& data);
+Observation observe_frame(const FrameInfo& frame, FrameData data);
 
 }  // namespace nearpose::program

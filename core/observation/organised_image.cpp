@@ -25,6 +25,12 @@ void set_states(const float* depth_m, const std::uint8_t* mask, std::size_t coun
     }
 }
 
+void set_states(const float* depth_m, std::size_t count, PixelState* states) {
+    constexpr auto kCandidate = static_cast<std::uint8_t>(PixelState::kCandidate);
+    for (std::size_t p = 0; p < count; ++p)
+        states[p] = static_cast<PixelState>(depth_m[p] > 0.0F ? kCandidate : 0);
+}
+
 int count_candidates(const PixelState* states, int count) {
     constexpr int kBlock = 128;  // a byte holds its count
     int sum = 0;
@@ -50,9 +56,10 @@ OrganisedImage organise(std::vector<float> depth_m, const std::optional<Mask>& m
     keep_in_range(image.depth_m.data(), image.depth_m.size(), static_cast<float>(sensor.min_range_m),
                   static_cast<float>(sensor.max_range_m));
     image.states.resize(image.depth_m.size());
-    const std::vector<std::uint8_t> everything(mask ? 0 : image.depth_m.size(), 1);
-    set_states(image.depth_m.data(), mask ? mask->value.data() : everything.data(), image.depth_m.size(),
-               image.states.data());
+    if (mask)
+        set_states(image.depth_m.data(), mask->value.data(), image.depth_m.size(), image.states.data());
+    else
+        set_states(image.depth_m.data(), image.depth_m.size(), image.states.data());
     return image;
 }
 
