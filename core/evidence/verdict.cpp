@@ -48,13 +48,31 @@ const char* to_string(Requirement requirement) {
     return "";
 }
 
+namespace {
+
+// Decimals that tell the figure from its limit and give the limit to a hundredth of itself; `usual` or up to three
+// more.
+int decimals_for(double value, double limit, int usual) {
+    for (int decimals = usual; decimals < usual + 3; ++decimals) {
+        const double shown = std::round(limit * std::pow(10.0, decimals)) / std::pow(10.0, decimals);
+        const bool told = std::abs(shown - limit) <= 0.01 * std::abs(limit);
+        if (told && fixed_text(value, decimals) != fixed_text(limit, decimals)) return decimals;
+    }
+    return usual + 3;
+}
+
+}  // namespace
+
 std::string describe(const Shortfall& shortfall) {
     constexpr double kMillimetres = 1e3, kDegrees = 57.295779513082321;
+    const auto text = [&](double number, double unit, int usual) {
+        return fixed_text(unit * number, decimals_for(unit * shortfall.value, unit * shortfall.limit, usual));
+    };
     const auto figures = [&](double unit, int decimals, const char* name) {
-        return fixed_text(unit * shortfall.value, decimals) + name;
+        return text(shortfall.value, unit, decimals) + name;
     };
     const auto wanted = [&](double unit, int decimals, const char* name) {
-        return ", wanted " + fixed_text(unit * shortfall.limit, decimals) + name;
+        return ", wanted " + text(shortfall.limit, unit, decimals) + name;
     };
     switch (shortfall.requirement) {
         case Requirement::kSeen:

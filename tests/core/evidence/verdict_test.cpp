@@ -95,6 +95,15 @@ TEST(Verdict, NothingIsMissingOfWhatIsAcceptedAndAllOfWhatIsNot) {
     EXPECT_EQ(judge(evidence, Tolerance{}, Symmetries{}).missing.size(), 2U);
 }
 
+// A sentence that says "0.93, wanted 0.93" explains nothing.
+TEST(Verdict, SentencesTellTheFigureFromItsLimit) {
+    EXPECT_EQ(describe({Requirement::kAgreement, 0.9284, 0.93, {}}), "too little agrees: 0.928, wanted 0.930");
+    EXPECT_EQ(describe({Requirement::kTranslation, 0.00214, 0.00015, "x"}),
+              "precision: 2.14 mm along x, wanted 0.15 mm");
+    EXPECT_EQ(describe({Requirement::kRotation, 0.0174535, 0.0174533, "z"}),
+              "precision: 1.00001 degrees about z, wanted 1.00000 degrees");
+}
+
 TEST(Verdict, RotationAboutAnAxisOfRevolutionDoesNotCount) {
     Evidence evidence = flawless();
     evidence.covariance_about_centre(2, 2) = 1.0;
