@@ -16,6 +16,7 @@
 #include "apps/data_set/result_csv.hpp"
 #include "apps/estimate/estimate_options.hpp"
 #include "apps/estimate/estimate_outputs.hpp"
+#include "apps/estimate/verdict_summary.hpp"
 #include "apps/part_model/model_symmetries.hpp"
 #include "apps/runs/estimator_setup.hpp"
 #include "apps/runs/run_folder.hpp"
@@ -26,7 +27,14 @@ namespace {
 
 struct Tally {
     int frames = 0, unread = 0, seen = 0;
+    std::vector<JudgedFrame> judged;
 };
+
+JudgedFrame judged(int frame_id, const UpdateResult& result) {
+    JudgedFrame frame{frame_id, result.verdict, {}};
+    for (const Shortfall& shortfall : result.missing) frame.missing.emplace_back(to_string(shortfall.requirement));
+    return frame;
+}
 
 std::optional<data_set::ModelInfo> declared_info(const ModelOptions& model) {
     const std::filesystem::path file = model.models / "models_info.json";
@@ -162,7 +170,14 @@ void run_frame(const EstimateOptions& options, const SharedOptions& shared, cons
                      shared.quiet);
     }
     if (result.status == UpdateStatus::kEstimated) ++tally.seen;
+    tally.judged.push_back(judged(frame.id, result));
     outputs.append(frame, report, observation, result, estimator.particles());
+}
+
+// Nothing where the part was never seen: exit_code says that, and what to check.
+void print_verdicts(const Tally& tally, const SharedOptions& shared) {
+    if (tally.seen == 0) return;
+    for (const std::string& line : summary_lines(tally_of(tally.judged))) print_notice(line, shared.quiet);
 }
 
 int exit_code(const Tally& tally) {
@@ -209,6 +224,7 @@ int estimate(const EstimateOptions& given, const SharedOptions& shared) {
         progress.step();
     }
     outputs.close();
+    print_verdicts(tally, shared);
     return exit_code(tally);
 }
 

@@ -72,7 +72,6 @@ Json modes_of(const std::vector<Mode>& modes) {
     return list;
 }
 
-// Of one observation, largest standard deviation first; a turn counts with the way of a point at half the diameter.
 // What keeps the estimate from being accepted, in the requirement's unit and in words.
 Json missing_of(const std::vector<Shortfall>& missing) {
     Json list = Json::array();
@@ -89,6 +88,7 @@ Json evidence_of(const PositiveEvidence& evidence) {
             {"free_space", evidence.free_space}, {"coplanar", evidence.coplanar}, {"total", evidence.total()}};
 }
 
+// Of one observation, largest standard deviation first; a turn counts with the way of a point at half the diameter.
 Json observability_of(const Observability& observability) {
     Json sigmas = Json::array();
     for (const double sigma_m : observability.sigmas_m) sigmas.push_back(sigma_m);

@@ -9,6 +9,7 @@
 #include "apps/data_set/bop_scene.hpp"
 #include "apps/data_set/json_file.hpp"
 #include "apps/data_set/result_csv.hpp"
+#include "apps/runs/verdict_tally.hpp"
 #include "core/base/parallel.hpp"
 
 namespace nearpose::evaluation {
@@ -53,16 +54,6 @@ bool is_same(const Pose& a, const Pose& b) {
     return (a.translation - b.translation).norm() < 1e-6 && angle_between(a.rotation, b.rotation) < 1e-6;
 }
 
-Verdict verdict_of(const data_set::JsonValue& value) {
-    const std::string text = value.text();
-    std::string known;
-    for (const Verdict verdict : {Verdict::kAccept, Verdict::kContinue, Verdict::kLost}) {
-        if (text == to_string(verdict)) return verdict;
-        known += (known.empty() ? "" : ", ") + std::string(to_string(verdict));
-    }
-    throw value.error("is \"" + text + "\", but must be one of " + known);
-}
-
 void read_first_line(const data_set::JsonValue& line, Estimates& estimates) {
     if (!line.is_object() || !line.find("content") || line.at("content").text() != "nearpose estimate" ||
         line.at("format").integer() != 1) {
@@ -80,7 +71,8 @@ void read_first_line(const data_set::JsonValue& line, Estimates& estimates) {
 void add_line(const data_set::JsonValue& line, const std::string& results, Estimates& estimates) {
     const data_set::JsonValue frame = line.at("frame");
     const std::string status = line.at("status").text();
-    if (const auto verdict = line.find("verdict")) estimates.verdicts[frame.integer()] = verdict_of(*verdict);
+    if (const auto verdict = line.find("verdict"))
+        estimates.verdicts[frame.integer()] = program::logged_verdict(*verdict);
     const auto estimate = estimates.of_frame.find(frame.integer());
     if (estimate == estimates.of_frame.end() || !line.find("covariance")) return;
     if (!is_same(logged_pose(line), estimate->second.camera_from_object)) {
