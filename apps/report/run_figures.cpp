@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "apps/runs/verdict_tally.hpp"
+
 namespace nearpose::report {
 namespace {
 
@@ -54,6 +56,30 @@ int count_of(const RunInput& input, const std::string& status) {
     return count;
 }
 
+// null where no frame has a verdict.
+Json verdicts_json(const std::vector<LoggedFrame>& log) {
+    std::vector<program::JudgedFrame> judged;
+    for (const LoggedFrame& frame : log) {
+        if (!frame.verdict) continue;
+        program::JudgedFrame& added = judged.emplace_back(program::JudgedFrame{frame.frame_id, *frame.verdict, {}});
+        for (const LoggedLack& lack : frame.missing) added.missing.push_back(lack.requirement);
+    }
+    if (judged.empty()) return nullptr;
+    const program::VerdictTally tally = program::tally_of(judged);
+    Json lacks = Json::array();
+    for (const program::Lack& lack : tally.lacks)
+        lacks.push_back({{"requirement", lack.requirement},
+                         {"title", program::title_of(lack.requirement)},
+                         {"advice", program::advice_for(lack.requirement)},
+                         {"frames", lack.frames},
+                         {"first_frame", lack.first_frame}});
+    return {{"frames", tally.frames},
+            {"accept", tally.accepts},
+            {"continue", tally.continues},
+            {"lost", tally.lost},
+            {"lacks", lacks}};
+}
+
 }  // namespace
 
 std::vector<FrameErrors> errors_of_run(const RunInput& input) {
@@ -82,7 +108,8 @@ Json figures_json(const RunInput& input, const std::vector<FrameErrors>& errors,
                     {"estimated", count_of(input, "estimated")},
                     {"predicted", count_of(input, "predicted")},
                     {"without_pose", count_of(input, "no_pose")},
-                    {"time_ms", statistics_json(times_ms(input))}};
+                    {"time_ms", statistics_json(times_ms(input))},
+                    {"verdicts", verdicts_json(input.log)}};
     if (input.truth.empty()) return figures;
     evaluation::SummaryOptions options;
     // A run that is hardly longer than the burn-in still has figures.

@@ -11,7 +11,7 @@ namespace nearpose::report {
 // Errors of every logged frame; without errors where the truth or the pose is not known.
 std::vector<evaluation::FrameErrors> errors_of_run(const RunInput& input);
 
-// null where no truth is known, but for times and counts.
+// Without truth: counts, verdicts and times alone.
 nlohmann::ordered_json figures_json(const RunInput& input, const std::vector<evaluation::FrameErrors>& errors,
                                     int burn_in);
 

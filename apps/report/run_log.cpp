@@ -6,6 +6,7 @@
 #include "apps/base/file_io.hpp"
 #include "apps/base/text_split.hpp"
 #include "apps/data_set/json_file.hpp"
+#include "apps/runs/verdict_tally.hpp"
 
 namespace nearpose::report {
 namespace {
@@ -49,16 +50,28 @@ Matrix6d matrix_of(const JsonValue& value) {
     return Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(numbers.data());
 }
 
+std::vector<LoggedLack> lacks_of(const JsonValue& line) {
+    std::vector<LoggedLack> lacks;
+    const std::optional<JsonValue> missing = line.find("missing");
+    if (!missing) return lacks;
+    for (const JsonValue& lack : missing->elements())
+        lacks.push_back({lack.at("requirement").text(), lack.at("text").text()});
+    return lacks;
+}
+
 LoggedFrame frame_of(const JsonValue& line) {
     LoggedFrame frame;
     frame.frame_id = line.at("frame").integer();
     frame.stamp_s = line.at("stamp_s").number();
     frame.status = line.at("status").text();
     if (const auto error = line.find("error")) frame.error = error->text();
+    if (const auto verdict = line.find("verdict")) frame.verdict = program::logged_verdict(*verdict);
+    frame.missing = lacks_of(line);
     if (line.find("translation_m")) {
         frame.camera_from_object = pose_of(line);
         frame.covariance = matrix_of(line.at("covariance"));
         frame.score = line.at("score").number();
+        if (const auto agreement = line.find("agreement")) frame.agreement = agreement->number();
         frame.cost = line.at("cost").number();
     }
     frame.effective_sample_size = line.at("effective_sample_size").number();

@@ -9,16 +9,24 @@
 #include <vector>
 
 #include "core/base/pose.hpp"
+#include "core/evidence/verdict.hpp"
 
 namespace nearpose::report {
+
+// What kept a frame from being accepted, as its log says it.
+struct LoggedLack {
+    std::string requirement, text;
+};
 
 struct LoggedFrame {
     int frame_id = 0;
     double stamp_s = 0.0;
     std::string status, error;
+    std::optional<Verdict> verdict;   // the oldest logs have none
+    std::vector<LoggedLack> missing;  // and later ones do not say why
     std::optional<Pose> camera_from_object;
     std::optional<Matrix6d> covariance;
-    std::optional<double> score, cost;
+    std::optional<double> score, agreement, cost;  // the oldest logs do not have the agreement
     double effective_sample_size = 0.0;
     int points_observed = 0;
     bool resampled = false, mode_replaced = false;

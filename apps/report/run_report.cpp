@@ -85,6 +85,12 @@ Json seen_json(const RunInput& input, std::size_t index, const EmbreeScene& mode
             {"camera", {camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy}}};
 }
 
+Json missing_json(const std::vector<LoggedLack>& missing) {
+    Json list = Json::array();
+    for (const LoggedLack& lack : missing) list.push_back({{"requirement", lack.requirement}, {"text", lack.text}});
+    return list;
+}
+
 Json frame_json(const RunInput& input, std::size_t index, const evaluation::FrameErrors& errors,
                 const EmbreeScene& model, const RunReportOptions& options) {
     const LoggedFrame& logged = input.log[index];
@@ -98,7 +104,12 @@ Json frame_json(const RunInput& input, std::size_t index, const evaluation::Fram
                   {"points_observed", logged.points_observed},
                   {"mode_replaced", logged.mode_replaced}};
     if (!logged.error.empty()) frame["error"] = logged.error;
+    if (logged.verdict) {
+        frame["verdict"] = to_string(*logged.verdict);
+        frame["missing"] = missing_json(logged.missing);
+    }
     if (logged.time_s >= 0.0) frame["time_ms"] = 1e3 * logged.time_s;
+    if (logged.agreement) frame["agreement"] = *logged.agreement;
     if (logged.score) frame["score"] = *logged.score;
     if (logged.covariance && logged.status == "estimated") {
         const Sigma sigma = sigma_of(*logged.covariance, model.extent().centre_in_object());

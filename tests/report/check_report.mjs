@@ -47,7 +47,33 @@ const COVERED = `(() => {
   return other / (data.length / 4);
 })()`;
 
-async function check(browser, report, poses) {
+// Frames as the log describes them.
+const loggedFrames = (jsonl) => readFileSync(jsonl, 'utf8').trim().split('\n').slice(1).map((line) => JSON.parse(line));
+
+// Each frame shows the log's sentences, and the table counts what the log lacks.
+async function checkVerdicts(browser, log) {
+  const lacks = new Map();
+  for (const { frame, verdict, missing } of log) {
+    await browser.evaluate(`location.hash = "#frame=${frame}"`);
+    await browser.until(`document.body.dataset.frame === '${frame}'`, `frame ${frame} is shown`);
+    const shown = await browser.evaluate(`[...document.querySelectorAll('.missing:not([hidden]) li')].map((line) => line.textContent)`);
+    assert.deepEqual(shown, missing.map(({ text }) => text), `frame ${frame}`);
+    for (const name of [verdict, ...missing.map(({ requirement }) => requirement)]) lacks.set(name, [...lacks.get(name) ?? [], frame]);
+  }
+  assert.ok(log.some(({ missing }) => missing.length > 0) && log.some(({ verdict }) => verdict === 'accept'), 'frames of both kinds');
+  const rows = await browser.evaluate(`[...document.querySelectorAll('.verdicts tbody tr')].map((row) => ({ name: row.dataset.row,
+    cells: [...row.querySelectorAll('td')].slice(1).map((cell) => cell.textContent),
+    bars: [...row.querySelectorAll('rect')].map((bar) => [bar.x.baseVal.value, bar.width.baseVal.value]) }))`);
+  assert.deepEqual(new Set(rows.map(({ name }) => name)), new Set(lacks.keys()));
+  for (const { name, cells: [count, share, first], bars } of rows) {
+    const frames = lacks.get(name);
+    assert.deepEqual([Number(count), Number(first)], [frames.length, frames[0]], name);
+    assert.ok(Math.abs(Number.parseFloat(share) - 100 * frames.length / log.length) < 0.5, `${name}: ${share}`);
+    assert.deepEqual(bars.flatMap(([begin, width]) => Array.from({ length: width }, (_, i) => begin + i)), frames, name);
+  }
+}
+
+async function check(browser, report, poses, log) {
   await browser.open(pathToFileURL(report).href);
   await browser.until(`document.body?.dataset.frame !== undefined && document.querySelectorAll('.uplot').length >= 4 &&
     document.querySelector('canvas.depth').dataset.frame !== undefined`, 'the page is built');
@@ -69,6 +95,8 @@ async function check(browser, report, poses) {
     .map((cell) => cell.textContent).join()`);
   assert.match(cursors, /^1(,1)*$/);
 
+  await checkVerdicts(browser, log);
+
   // The block alone covers a good part of the view, and nothing does once all is switched off.
   const toggles = (on) => browser.evaluate(`document.querySelectorAll('.view-panel .toggle input').forEach((box, i) => {
     if (box.checked !== (${on} && i === 0)) box.click(); })`);
@@ -86,14 +114,16 @@ async function check(browser, report, poses) {
 let browser = null;
 try {
   run('simulate', '--scenario', 'piston', '--seed', '1', '--frames', '6', '--out', folder);
-  run('estimate', '--scene', `${folder}/test/000001`, '--models', `${folder}/models`, '--object', '1', '--run', `${folder}/run`);
+  // A tolerance that the first frames do not meet and the later ones do.
+  run('estimate', '--scene', `${folder}/test/000001`, '--models', `${folder}/models`, '--object', '1', '--run', `${folder}/run`,
+    '--tolerance-mm', '1.5');
   const made = spawnSync(nearpose, ['report', `${folder}/run`, '--quiet'], { encoding: 'utf8' });
   if (made.status === 1 && made.stderr.includes('nodejs')) skip('the program was built without the viewer');
   assert.equal(made.status, 0, made.stderr);
   const report = `${folder}/run/report.html`;
   assert.ok(statSync(report).size < 2.5e6, `${statSync(report).size} bytes for 6 frames`);
   browser = new Browser(chromium, `${folder}/profile`);
-  await check(browser, report, posesOf(`${folder}/run/poses.csv`));
+  await check(browser, report, posesOf(`${folder}/run/poses.csv`), loggedFrames(`${folder}/run/log.jsonl`));
   console.log('the report opens, its slider moves the pose, and the block is seen');
 } finally {
   await browser?.close();

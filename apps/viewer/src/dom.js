@@ -1,8 +1,6 @@
 // Elements without a framework.
 
-// Attributes that are functions are event listeners; children are texts, elements, or nothing.
-export function element(name, attributes = {}, ...children) {
-  const made = document.createElement(name);
+function furnish(made, attributes, children) {
   for (const [key, value] of Object.entries(attributes)) {
     if (typeof value === 'function') made.addEventListener(key, value);
     else if (value === true) made.setAttribute(key, '');
@@ -10,6 +8,15 @@ export function element(name, attributes = {}, ...children) {
   }
   made.append(...children.flat().filter((child) => child != null && child !== false));
   return made;
+}
+
+// Attributes that are functions are event listeners; children are texts, elements, or nothing.
+export function element(name, attributes = {}, ...children) {
+  return furnish(document.createElement(name), attributes, children);
+}
+
+export function drawing(name, attributes = {}, ...children) {
+  return furnish(document.createElementNS('http://www.w3.org/2000/svg', name), attributes, children);
 }
 
 // The page's colours change with the system's light or dark setting.

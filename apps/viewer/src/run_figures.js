@@ -40,6 +40,8 @@ export function cards({ figures }) {
   } else {
     list.push(card('Frames with the part seen', `${figures.estimated} of ${figures.frames}`, '', 'the true poses are not known: no errors are shown'));
   }
+  const { verdicts } = figures;
+  if (verdicts) list.push(card('Frames accepted', `${verdicts.accept} of ${verdicts.frames}`, '', `${verdicts.continue} continue, ${verdicts.lost} lost`));
   if (figures.time_ms) list.push(card('Time a frame, median', digits(figures.time_ms.median), 'ms', `95 %: ${digits(figures.time_ms.percentile_95)} ms`));
   return element('section', { class: 'cards', 'aria-label': 'Key figures' }, list);
 }

@@ -7,6 +7,7 @@ import { Player, listenToKeys } from './player.js';
 import { choice, digits, element, toggle } from './dom.js';
 import { depthColor, gradient, residualColor } from './ramps.js';
 import { cards, chips, details } from './run_figures.js';
+import { missingList, verdictPanel } from './verdicts.js';
 
 function transport(data, player) {
   const last = data.frames.length - 1;
@@ -35,11 +36,13 @@ function facts(data, player) {
     const frame = data.frames[index];
     const distance = frame.pose && 1e3 * Math.hypot(...frame.pose.slice(0, 3));
     const rows = [['state', frame.unread ? 'not read' : STATUS[frame.status] ?? frame.status],
+      frame.verdict && ['verdict', frame.verdict],
       frame.error_mm != null && ['position error', `${digits(frame.error_mm)} mm`],
       frame.error_deg != null && ['rotation error', `${digits(frame.error_deg)}°`],
       frame.sigma_mm != null && ['expected (1 σ)', `${digits(frame.sigma_mm)} mm, ${digits(frame.sigma_deg)}°`],
       distance && ['distance of its origin', `${digits(distance)} mm`],
-      frame.score != null && ['agreement', `${digits(100 * frame.score)} %`],
+      frame.agreement != null && ['agreement', `${digits(100 * frame.agreement)} %`],
+      frame.score != null && ['score', `${digits(100 * frame.score)} %`],
       frame.time_ms != null && ['time', `${digits(frame.time_ms)} ms`]];
     list.replaceChildren(...rows.filter(Boolean).flatMap(([name, value]) => [element('dt', {}, name), element('dd', {}, value)]));
   });
@@ -113,8 +116,9 @@ export function showRun(page, data) {
     element('header', {}, element('div', { class: 'title' }, element('h1', {}, data.title), element('p', { class: 'brand' }, 'nearpose report')), chips(data.run)),
     cards(data),
     element('section', { class: 'scene', 'aria-label': 'Frames' }, panel,
-      element('div', { class: 'aside' }, depth.panel, element('div', { class: 'panel' }, facts(data, player))),
+      element('div', { class: 'aside' }, depth.panel, element('div', { class: 'panel' }, facts(data, player), missingList(data, player))),
       element('div', { class: 'panel transport-panel' }, transport(data, player))),
+    ...[verdictPanel(data, player)].filter(Boolean),
     runPlots(data, player),
     details(data));
   const view = start();

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "apps/report/experiment_report.hpp"
 #include "apps/report/page.hpp"
@@ -114,6 +115,58 @@ TEST_F(RunReport, HoldsTheRunAndErrors) {
         const std::string html = page(report.title, report.json);
         EXPECT_TRUE(contains(html, "Permission is hereby granted")) << "licence texts";
     }
+}
+
+// The log's lines with `change` made to each frame, and the report of that run.
+class RunReportOfALog : public RunReport {
+  protected:
+    nlohmann::json report_with(const std::function<void(nlohmann::json&)>& change) const {
+        const std::vector<std::string> lines = program_tests::lines_of(read_text(run_ / "log.jsonl"));
+        std::string text = lines.front() + "\n";
+        for (std::size_t i = 1; i < lines.size(); ++i) {
+            nlohmann::json line = nlohmann::json::parse(lines[i]);
+            change(line);
+            text += line.dump() + "\n";
+        }
+        write_text(run_ / "log.jsonl", text);
+        return nlohmann::json::parse(run_report(run_, {}, [](const std::string&) {}).json);
+    }
+};
+
+TEST_F(RunReportOfALog, HoldsVerdictsAndTheLogsSentences) {
+    const nlohmann::json missing = {{{"requirement", "agreement"}, {"text", "too little agrees: 0.81, wanted 0.93"}},
+                                    {{"requirement", "colour"}, {"text", "the colour is wrong"}}};
+    const nlohmann::json report = report_with([&](nlohmann::json& line) {
+        const bool last = line["frame"] == 2;
+        line["verdict"] = last ? "lost" : "accept";
+        line["missing"] = last ? missing : nlohmann::json::array();
+    });
+    EXPECT_EQ(report["frames"][1]["verdict"], "accept");
+    EXPECT_EQ(report["frames"][1]["missing"], nlohmann::json::array());
+    EXPECT_EQ(report["frames"][2]["missing"], missing);
+    const nlohmann::json& verdicts = report["figures"]["verdicts"];
+    EXPECT_EQ(verdicts["frames"], 3);
+    EXPECT_EQ(verdicts["accept"], 2);
+    EXPECT_EQ(verdicts["lost"], 1);
+    ASSERT_EQ(verdicts["lacks"].size(), 2U);
+    EXPECT_EQ(verdicts["lacks"][0]["title"], "agreement with the image");
+    EXPECT_EQ(verdicts["lacks"][0]["frames"], 1);
+    EXPECT_EQ(verdicts["lacks"][0]["first_frame"], 2);
+    EXPECT_EQ(verdicts["lacks"][1]["title"], "colour") << "a requirement of a newer program";
+}
+
+TEST_F(RunReportOfALog, ReadsLogsThatDoNotSayWhy) {
+    const nlohmann::json without_reasons = report_with([](nlohmann::json& line) { line.erase("missing"); });
+    EXPECT_TRUE(without_reasons["frames"][0]["missing"].empty());
+    EXPECT_EQ(without_reasons["figures"]["verdicts"]["frames"], 3);
+    EXPECT_TRUE(without_reasons["figures"]["verdicts"]["lacks"].empty());
+
+    const nlohmann::json without_verdicts = report_with([](nlohmann::json& line) {
+        line.erase("verdict");
+        line.erase("agreement");
+    });
+    EXPECT_FALSE(without_verdicts["frames"][0].contains("verdict"));
+    EXPECT_TRUE(without_verdicts["figures"]["verdicts"].is_null());
 }
 
 TEST_F(RunReport, GoesWithoutTruthAndParticles) {
