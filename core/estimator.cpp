@@ -63,7 +63,7 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
     const Frame frame{*model_, *solver_, options_, observation, measured(now_from_before), belief_.step + 1};
     Ledger ledger(budget_);
     UpdateResult result = nothing_seen(observation);
-    std::optional<Matrix6d> fit_covariance;
+    std::optional<JointFit> fit;
     bool seen = false;
 
     // The paper: resampling where the weights are uneven, control, diffusion.
@@ -73,7 +73,7 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
         Situation situation = situation_of(belief, method);
         belief.pose_before_loss = pose_before_loss(belief, situation.phase, method);
         SearchResult found{belief.particles, nullptr, {}};
-        if (situation.searching()) found = search(frame, ledger);
+        if (situation.searching()) found = search(situation.plan, frame, ledger);
         situation = gate_prediction(after_search(situation, found), belief, frame, ledger);
         belief.lock = after_decision(belief.lock, situation.phase);
 
@@ -86,11 +86,11 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
         seen = choice.seen;
         if (seen) adopt(belief, moved, choice);
         // The default method: a joint fit of pose and sensor errors, fused with the prediction.
-        if (seen && modes_compared) fit_covariance = fuse(belief, choice, situation, frame, ledger);
+        if (seen && modes_compared) fit = fuse(belief, choice, situation, frame, ledger);
         write_choice(choice, moved, result);
     }
     result.status = status_of(seen, belief.tracked.has_value());
-    const Assessment assessment = assess(result, belief, fit_covariance, frame, ledger);
+    const Assessment assessment = assess(result, belief, fit, frame, ledger);
     belief.lock = after_assessment(belief.lock, assessment, method);
 
     // All state is written here: an update that throws leaves no trace.

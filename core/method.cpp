@@ -100,6 +100,8 @@ void validate(const RelocalisationOptions& options) {
     check_option("relocalisation.frames_contradicted", options.frames_contradicted, 0, 1e6);
     check_option("relocalisation.low_agreement_at_first", options.low_agreement_at_first, 0, 1e6);
     check_option("relocalisation.low_agreement_period", options.low_agreement_period, 1, 1e6);
+    check_option("relocalisation.whole_searches", options.whole_searches, 0, 1e6);
+    check_option("relocalisation.parts_of_search", options.parts_of_search, 1, 1000);
 }
 
 void validate(const PhaseEffort& effort, const std::string& name) {

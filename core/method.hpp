@@ -83,6 +83,10 @@ struct RelocalisationOptions {
     bool low_agreement = true;       // also while the agreement is too low to be verified:
     int low_agreement_at_first = 4;  // in so many frames,
     int low_agreement_period = 16;   // and later once in so many
+    // After so many frames in a row that showed nothing of it, a search is spread over frames: each of them makes a
+    // part of it with other draws. So the time until the object is found again stays the same, and no frame takes long.
+    int whole_searches = 4;
+    int parts_of_search = 8;
 };
 
 // The most that a frame may spend in one phase.

@@ -108,6 +108,12 @@ Problem with_seen_field(Problem problem, const GroupVarianceOptions& options) {
     return problem;
 }
 
+// The standard deviation of the smooth field that the image shows [m]; the sensor model's where no ray measures it.
+double seen_field_sigma_m(const Problem& problem, const Problem& seen, const SensorModel& sensor) {
+    if (problem.active_nodes == 0) return sensor.systematic_sigma_m;
+    return sensor.systematic_sigma_m * std::sqrt(seen.variances[0] / problem.variances[0]);
+}
+
 // The covariance of the fitted pose. The sensor's errors have their whole variances V, but the fit takes them for
 // smaller. With the fit's matrix M, whose prior of the errors is L, the estimate is off by M^-1 (J^T W noise - L
 // errors) and its covariance is M^-1 (J^T W J + L V L) M^-1.
@@ -183,7 +189,9 @@ JointFit fit_jointly(const Pose& start, const StepContext& context, const FitOpt
                 at.errors[problem.active[i] - 6] = step[static_cast<Eigen::Index>(i)];
         }
         if (last) {
-            fit.covariance = covariance_of(with_seen_field(problem, options.field_variance), weight, factor);
+            const Problem seen = with_seen_field(problem, options.field_variance);
+            fit.shared_sigma_m = seen_field_sigma_m(problem, seen, sensor);
+            fit.covariance = covariance_of(seen, weight, factor);
             fit.constant_covariance = constant_covariance_of(problem, factor, context.observation, options);
         }
         fit.pairs = equations.rays;

@@ -46,6 +46,8 @@ struct JointFit {
     // To be added: the covariance of errors that are the same in every frame, which no number of frames averages out:
     // of the part's scale against its CAD, of the camera's focal length and principal point.
     Matrix6d constant_covariance = Matrix6d::Zero();
+    // Of what neighbouring rays are off together, as these residuals show it: errors of the sensor and of the CAD [m].
+    double shared_sigma_m = 0.0;
 };
 
 // Gauss-Newton from a pose in the basin of attraction, such as a refined mode. A new view is cast each round, and the

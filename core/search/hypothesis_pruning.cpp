@@ -165,9 +165,11 @@ PoseHypothesis score_coarsely(const PruningContext& context, const Pose& pose) {
     return {pose, share_of(options.coarse_points), score_of(options.coarse_model_points)};
 }
 
-std::vector<Pose> prune_hypotheses(std::vector<PoseHypothesis> hypotheses, const PruningContext& context, int count) {
+std::vector<Pose> prune_hypotheses(std::vector<PoseHypothesis> hypotheses, const PruningContext& context, int count,
+                                   double share) {
     for (const PruningStage& stage : context.options.stages) {
-        hypotheses = best_of(hypotheses, static_cast<std::size_t>(stage.kept), stage.distinct, context);
+        const int kept = std::max(count, static_cast<int>(std::ceil(share * stage.kept)));
+        hypotheses = best_of(hypotheses, static_cast<std::size_t>(kept), stage.distinct, context);
         score(hypotheses, stage, context);
     }
     std::vector<Pose> poses;

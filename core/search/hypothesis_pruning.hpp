@@ -40,7 +40,9 @@ double model_score(const PruningContext& context, const Pose& camera_from_object
 PoseHypothesis score_coarsely(const PruningContext& context, const Pose& camera_from_object);
 
 // The best hypotheses after the stages of the options, which also align them with the model's surface; `count` or
-// fewer. They are taken by both scores in turns, best first, at most one from each coarse cell of poses.
-std::vector<Pose> prune_hypotheses(std::vector<PoseHypothesis> hypotheses, const PruningContext& context, int count);
+// fewer. They are taken by both scores in turns, best first, at most one from each coarse cell of poses. Each stage
+// keeps `share` of what the options say, in 0..1: for a part of a whole search.
+std::vector<Pose> prune_hypotheses(std::vector<PoseHypothesis> hypotheses, const PruningContext& context, int count,
+                                   double share = 1.0);
 
 }  // namespace nearpose

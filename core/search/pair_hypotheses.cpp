@@ -170,7 +170,7 @@ std::vector<Pose> hypotheses_from_pairs(const Observation& observation, const Po
             i % search.single_point_period == 0 ? sampler.pose_from_point(random) : sampler.pose_from_pair(random);
         if (pose) hypotheses[i] = score_coarsely(context, *pose);
     });
-    return prune_hypotheses(std::move(hypotheses), context, wanted.count);
+    return prune_hypotheses(std::move(hypotheses), context, wanted.count, wanted.share);
 }
 
 }  // namespace nearpose

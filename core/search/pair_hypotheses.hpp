@@ -22,6 +22,7 @@ SurfelGrid surfels_of(const Observation& observation, const PointPairTable& pair
 struct PairDraws {
     int draws = 0;                   // hypotheses
     int count = 0;                   // of poses that are wanted
+    double share = 1.0;              // of a whole search, in 0..1; each stage of pruning keeps as much less
     std::uint64_t first_stream = 0;  // draw i uses the stream (seed, step, first_stream + i)
     int num_threads = 1;
 };

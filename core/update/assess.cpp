@@ -40,8 +40,8 @@ std::string name_of_alternative(const std::vector<Mode>& modes, const Pose& pose
 
 }  // namespace
 
-Assessment assess(UpdateResult& result, const Belief& belief, const std::optional<Matrix6d>& fit_covariance,
-                  const Frame& frame, Ledger& ledger) {
+Assessment assess(UpdateResult& result, const Belief& belief, const std::optional<JointFit>& fit, const Frame& frame,
+                  Ledger& ledger) {
     if (!belief.tracked) return {};
     constexpr double kOneMetre = 1.0;
     const Method& method = frame.method();
@@ -54,7 +54,8 @@ Assessment assess(UpdateResult& result, const Belief& belief, const std::optiona
 
     result.camera_from_object = pose;
     result.cost = belief.tracked->cost;
-    std::optional<Matrix6d> observed = fit_covariance;  // by this observation alone
+    std::optional<Matrix6d> observed;  // by this observation alone
+    if (fit) observed = fit->covariance + fit->constant_covariance;
     if (!belief.track) observed = covariance_at(pose, context, method.fit);
     result.covariance = about_origin(belief.track ? belief.track->whole_covariance() : *observed, centre);
     if (!estimated) observed.reset();
@@ -62,8 +63,8 @@ Assessment assess(UpdateResult& result, const Belief& belief, const std::optiona
         observability_of(observed.value_or(kOneMetre * Matrix6d::Identity()), 0.5 * frame.model.diameter_m(),
                          frame.options.tolerance.translation_m, frame.model.symmetries, centre);
     describe_modes(result.modes, observed, context, frame);
-    const PoseEvidence shown = evidence_at(pose, context, refinement, frame);
-    result.pixels = shown.pixels;
+    const PoseEvidence shown = evidence_at(pose, context, refinement, frame, fit ? fit->shared_sigma_m : 0.0);
+    result.pixels = shown.judged;
     result.positive_evidence = shown.positive;
     result.log_odds_present = log_odds_with(shown.log_odds_present, belief.lock, method.presence);
 
@@ -79,8 +80,7 @@ Assessment assess(UpdateResult& result, const Belief& belief, const std::optiona
     result.verdict = judgement.verdict;
     result.missing = judgement.missing;
 
-    const double nats =
-        log_evidence_over_nothing(result.pixels, method.pixel_cost, method.refinement.rays_per_evidence);
+    const double nats = log_evidence_over_nothing(shown.pixels, method.pixel_cost, method.refinement.rays_per_evidence);
     return {judgement.verdict, judgement.verified,
             judgement.verdict == Verdict::kLost ? 0.0 : result.pixels.agreement(), nats * grid.stride * grid.stride,
             result.log_odds_present};

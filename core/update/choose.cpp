@@ -51,7 +51,8 @@ void disambiguate(Choice& choice, const Belief& belief, Situation situation, con
     const bool is_tracked = belief.tracked && !choice.replaces_tracked;
     std::vector<Mode> near = {chosen}, far;
     for (const Mode& mode : near_symmetric_modes(chosen, frame.model.symmetries)) near.push_back(mode);
-    const std::size_t most = near.size() + static_cast<std::size_t>(frame.method().preselection.disambiguated);
+    const std::size_t most =
+        near.size() + static_cast<std::size_t>(share_of(situation.plan, frame.method().preselection.disambiguated));
     for (const Mode& mode : choice.modes) {
         const double away_m = (mode.camera_from_object * centre - chosen.camera_from_object * centre).norm();
         (away_m < around_m && near.size() < most ? near : far).push_back(mode);

@@ -33,7 +33,7 @@ bool outweighs_prediction(const Pose& fitted, const Pose& predicted, const StepC
 
 // Where fit and prediction contradict each other, the object was moved: the fit counts. Where its evidence is too
 // small, the prediction stands.
-Matrix6d correct(Belief& belief, const Choice& choice, const Situation& situation, const Frame& frame, Ledger& ledger) {
+JointFit correct(Belief& belief, const Choice& choice, const Situation& situation, const Frame& frame, Ledger& ledger) {
     const Pose& chosen = choice.mode.camera_from_object;
     const PixelGrid grid = ray_grid_to_fit(frame, chosen, fit_rays(situation, frame));
     const StepContext context = frame.context(ledger.measured(grid, frame.observation), frame.method().step);
@@ -46,7 +46,7 @@ Matrix6d correct(Belief& belief, const Choice& choice, const Situation& situatio
                                   situation, frame.method()))
         belief.track = correct_track(*belief.track, fit, centre, frame.method().track);
     belief.tracked->camera_from_object = belief.track->camera_from_object;
-    return fit.covariance + fit.constant_covariance;
+    return fit;
 }
 
 // The particles learn of the chosen pose in place of their least likely one.
@@ -64,15 +64,15 @@ void adopt(Belief& belief, const MovedParticles& moved, const Choice& choice) {
     belief.alternatives = choice.alternatives;
 }
 
-std::optional<Matrix6d> fuse(Belief& belief, const Choice& choice, const Situation& situation, const Frame& frame,
+std::optional<JointFit> fuse(Belief& belief, const Choice& choice, const Situation& situation, const Frame& frame,
                              Ledger& ledger) {
-    std::optional<Matrix6d> covariance;
-    if (frame.method().fusion) covariance = correct(belief, choice, situation, frame, ledger);
+    std::optional<JointFit> fit;
+    if (frame.method().fusion) fit = correct(belief, choice, situation, frame, ledger);
     std::optional<double> alternatives_weight;
     if (choice.alternatives_compared) alternatives_weight = weight_of(belief.alternatives);
     belief.lock = after_choice(belief.lock, choice.replaces_tracked, ledger.effort.alternatives, alternatives_weight);
     replace_least_likely(belief.particles, choice.mode.camera_from_object);
-    return covariance;
+    return fit;
 }
 
 }  // namespace nearpose

@@ -13,9 +13,9 @@ namespace nearpose {
 void adopt(Belief& belief, const MovedParticles& moved, const Choice& choice);
 
 // The default method's. The adopted mode is fitted jointly with the sensor's errors and fused with the track. The
-// record of the lock takes the choice, and the chosen pose replaces the least likely particle. Gives the covariance of
-// this observation's own fit, about the model's centre; nothing where fusion is off.
-std::optional<Matrix6d> fuse(Belief& belief, const Choice& choice, const Situation& situation, const Frame& frame,
+// record of the lock takes the choice, and the chosen pose replaces the least likely particle. Gives this observation's
+// own fit; nothing where fusion is off.
+std::optional<JointFit> fuse(Belief& belief, const Choice& choice, const Situation& situation, const Frame& frame,
                              Ledger& ledger);
 
 }  // namespace nearpose

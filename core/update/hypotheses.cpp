@@ -30,10 +30,14 @@ std::vector<Mode> interleaved(const std::vector<Mode>& modes, const std::vector<
 std::vector<Mode> preselect(const std::vector<Mode>& particles, const Situation& situation, const Frame& frame,
                             Ledger& ledger) {
     const PreselectionOptions& options = frame.method().preselection;
+    constexpr int kLeastKept = 2;
     const Stopwatch watch;
     RefinementOptions refinement = situation.plan.refinement;
     refinement.rounds = std::min(refinement.rounds, options.rounds);
-    std::vector<Mode> modes = interleaved(frame.model.distinct(particles, options.tried), situation.best_from_pairs);
+    const auto tried = static_cast<std::size_t>(share_of(situation.plan, options.tried));
+    std::vector<Pose> from_pairs = situation.best_from_pairs;
+    from_pairs.resize(std::min(from_pairs.size(), tried));
+    std::vector<Mode> modes = interleaved(frame.model.distinct(particles, static_cast<int>(tried)), from_pairs);
     const int count = ledger.affordable(Stage::kPreselection, static_cast<int>(modes.size()), 1);
     modes.resize(count);
     std::vector<RefinedMode> moved(modes.size());
@@ -51,7 +55,7 @@ std::vector<Mode> preselect(const std::vector<Mode>& particles, const Situation&
     });
     for (const RefinedMode& mode : moved) ledger.add(mode.counts, mode.seconds);
     ledger.budget.took(Stage::kPreselection, count, watch.elapsed_s());
-    return frame.model.distinct(modes, options.kept);
+    return frame.model.distinct(modes, std::max(kLeastKept, share_of(situation.plan, options.kept)));
 }
 
 void append(std::vector<Mode>& modes, const std::vector<Mode>& more) {

@@ -80,6 +80,10 @@ Plan plan_of(Phase phase, const Method& method, bool predicted) {
     return plan;
 }
 
+double search_share(const Lock& lock, const RelocalisationOptions& options) {
+    return lock.frames_contradicted < options.whole_searches ? 1.0 : 1.0 / options.parts_of_search;
+}
+
 Lock after_prediction(Lock lock, bool motion_measured, const Method& method) {
     lock.accepted_evidence *= motion_measured ? method.choice.accepted_evidence_kept : 0.0;
     lock.log_odds_present *= motion_measured ? method.presence.kept : method.presence.kept_unmeasured;

@@ -87,8 +87,12 @@ struct Plan {
     GradientStep step;             // of a particle
     RefinementOptions refinement;  // of a mode
     int alternatives = 0;          // tried where they are due
+    double search_share = 1.0;     // of a search's hypotheses, in 0..1
 };
 Plan plan_of(Phase phase, const Method& method, bool predicted);
+
+// The share of a whole search that a frame makes: all of it at first, and a part where nothing was found for long.
+double search_share(const Lock& lock, const RelocalisationOptions& options);
 
 // How a frame changes the record, in this order.
 //   prediction: evidence fades, since what was accepted may have been moved; all of it where no motion was measured

@@ -1,6 +1,7 @@
 #include "core/update/pose_evidence.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/base/parallel.hpp"
 #include "core/update/ray_grids.hpp"
@@ -8,12 +9,18 @@
 namespace nearpose {
 
 PoseEvidence evidence_at(const Pose& camera_from_object, const StepContext& context,
-                         const RefinementOptions& refinement, const Frame& frame) {
+                         const RefinementOptions& refinement, const Frame& frame, double shared_sigma_m) {
     const PixelCostOptions options = refined_cost_options(context, refinement);
     const View view = context.views.generate(camera_from_object, context.observed.camera);
     const auto planes = fit_background(view, context.observed, options, frame.method().background);
     PoseEvidence evidence;
     evidence.pixels = pixel_cost(view, camera_from_object, context.observed, options);
+    evidence.judged = evidence.pixels;
+    if (shared_sigma_m > 0.0) {
+        PixelCostOptions wider = options;
+        wider.extra_sigma_m = std::hypot(options.extra_sigma_m, shared_sigma_m);
+        evidence.judged = pixel_cost(view, camera_from_object, context.observed, wider);
+    }
     evidence.positive =
         positive_evidence(view, camera_from_object, context.observed, planes, options, frame.method().background);
     evidence.log_odds_present = log_odds_present(evidence.positive, context.observed.grid.stride,

@@ -13,13 +13,15 @@ namespace nearpose {
 namespace {
 
 // Candidates from pairs of oriented points, best first: up to their share of `count`. None without surfels.
-std::vector<Pose> sample_on_pairs(const SurfelGrid* surfels, int count, int draws, const Frame& frame) {
+std::vector<Pose> sample_on_pairs(const SurfelGrid* surfels, int count, double share_of_search, const Frame& frame) {
     if (surfels == nullptr) return {};
     const SearchOptions& options = frame.method().search;
     const bool segmented = frame.observation.segmented();
     const double share = segmented ? options.pair_share_segmented : options.pair_share_unsegmented;
-    const PairDraws wanted{.draws = (segmented ? 1 : options.draws_factor_unsegmented) * draws,
+    const int draws = (segmented ? 1 : options.draws_factor_unsegmented) * options.draws;
+    const PairDraws wanted{.draws = static_cast<int>(draws * share_of_search),
                            .count = static_cast<int>(count * share),
+                           .share = share_of_search,
                            .first_stream = static_cast<std::uint64_t>(count),
                            .num_threads = frame.options.num_threads};
     return hypotheses_from_pairs(frame.observation, *frame.model.point_pairs, *surfels, options, wanted,
@@ -68,14 +70,14 @@ ParticleSet sample_from_all(std::vector<Pose> from_pairs, int count, const Frame
 
 // The candidates after a short gradient step, as many as there are to be particles, best first.
 std::vector<Pose> best_candidates(const std::vector<Pose>& candidates, const Window& window, const Frame& frame,
-                                  Ledger& ledger) {
+                                  int wanted, Ledger& ledger) {
     const std::vector<MovedParticle> moved =
         move_poses(candidates, frame.method().search.step, RandomPurpose::kStart, window, frame, ledger);
     std::vector<int> order(moved.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(),
                      [&](int a, int b) { return moved[a].negative_log_likelihood < moved[b].negative_log_likelihood; });
-    const int kept = ledger.affordable(Stage::kParticles, frame.options.num_particles, 1);
+    const int kept = ledger.affordable(Stage::kParticles, wanted, 1);
     order.resize(std::min<std::size_t>(order.size(), kept));
     std::vector<Pose> best;
     for (const int index : order) best.push_back(moved[index].camera_from_object);
@@ -84,7 +86,7 @@ std::vector<Pose> best_candidates(const std::vector<Pose>& candidates, const Win
 
 }  // namespace
 
-SearchResult search(const Frame& frame, Ledger& ledger) {
+SearchResult search(const Plan& plan, const Frame& frame, Ledger& ledger) {
     const SearchOptions& options = frame.method().search;
     const std::uint64_t seed = frame.options.seed;
     SearchResult found;
@@ -92,12 +94,13 @@ SearchResult search(const Frame& frame, Ledger& ledger) {
         found.surfels = std::make_shared<const SurfelGrid>(
             surfels_of(frame.observation, *frame.model.point_pairs, options, seed, frame.step));
     const Stopwatch watch;
-    const int wanted = std::max(options.candidates, frame.options.num_particles);
+    const int whole = std::max(options.candidates, frame.options.num_particles);
+    const int wanted = share_of(plan, whole);
     // A search that the budget cuts short is followed by one that tries others.
     const int count = ledger.affordable(Stage::kSearch, wanted, options.least_candidates);
-    const auto draws = static_cast<int>(static_cast<double>(options.draws) * count / wanted);
+    const double share = static_cast<double>(count) / whole;
     if (options.initialisation != Initialisation::kSphere) {
-        const std::vector<Pose> from_pairs = sample_on_pairs(found.surfels.get(), count, draws, frame);
+        const std::vector<Pose> from_pairs = sample_on_pairs(found.surfels.get(), count, share, frame);
         if (!frame.observation.segmented()) found.best_from_pairs = best_of(from_pairs, frame.method().preselection);
         found.particles = sample_from_all(from_pairs, count, frame);
     }
@@ -105,7 +108,8 @@ SearchResult search(const Frame& frame, Ledger& ledger) {
         found.particles = sample_on_sphere(frame.observation, frame.model.extent(), count, seed, frame.step);
     const Window everywhere{true, std::nullopt, found.surfels};
     if (options.candidates > 0)
-        found.particles.poses = best_candidates(found.particles.poses, everywhere, frame, ledger);
+        found.particles.poses = best_candidates(found.particles.poses, everywhere, frame,
+                                                share_of(plan, frame.options.num_particles), ledger);
     found.particles.negative_log_weights.assign(found.particles.poses.size(), 0.0);
     ledger.effort.starts = count;
     ledger.seconds.start = watch.elapsed_s();

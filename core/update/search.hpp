@@ -7,6 +7,6 @@
 namespace nearpose {
 
 // Draws poses from what is seen; the best become the particles.
-SearchResult search(const Frame& frame, Ledger& ledger);
+SearchResult search(const Plan& plan, const Frame& frame, Ledger& ledger);
 
 }  // namespace nearpose

@@ -38,6 +38,9 @@ struct Situation {
     bool searching() const { return phase == Phase::kSearching; }
 };
 
+// The share of `count` that a search of this frame makes, rounded up.
+int share_of(const Plan& plan, int count);
+
 // By the record of the frames before.
 Situation situation_of(const Belief& predicted, const Method& method);
 // The same after a search: poses are compared where its surfels say something.

@@ -213,6 +213,23 @@ TEST(JointFit, AFieldLargerThanTheSensorModelsWidensTheCovariance) {
     EXPECT_LT(mean_squared_distance, 15.0) << "the covariance of the sensor model alone would give up to 6 * 4^2";
 }
 
+TEST(JointFit, TellsTheSizeOfTheFieldThatTheImageShows) {
+    const SensorModel sensor = sensor_of_test();
+    const SensorField field = field_over(kCamera, sensor);
+    constexpr int kTrials = 10;
+    for (const double times : {0.0, 1.0, 3.0}) {
+        const double planted_m = times * sensor.systematic_sigma_m;
+        double mean_m = 0.0;
+        for (int trial = 0; trial < kTrials; ++trial) {
+            RandomStream random(11, trial, 0, RandomPurpose::kStart);
+            Eigen::VectorXd errors = Eigen::VectorXd::Zero(field.num_unknowns());
+            for (int i = 0; i < field.num_nodes(); ++i) errors[i] = planted_m * random.gaussian();
+            mean_m += fit(observe_with_errors(sensor, errors, 500 + trial), near_truth()).shared_sigma_m / kTrials;
+        }
+        EXPECT_NEAR(mean_m, planted_m, 0.25 * planted_m + 0.4 * sensor.systematic_sigma_m) << times;
+    }
+}
+
 TEST(JointFit, APartThatDiffersFromItsCadIsTrustedLess) {
     const SensorModel sensor = sensor_of_test();
     std::vector<test::Box> boxes = test::asymmetric_part();

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
+#include <vector>
 
 #include "core/update/pose_evidence.hpp"
 #include "tests/core/estimator_scene.hpp"
@@ -60,6 +62,31 @@ TEST(Choose, AModeThatPlanesExplainBetterIsPenalisedAndTheTruthIsNot) {
     EXPECT_LT(penalty.on_wall, -1.0);
     const Penalty threads = penalty_of(small_options(method_default(), 3));
     EXPECT_EQ(threads.on_wall, penalty.on_wall) << "the same bits for any number of threads";
+}
+
+TEST(PoseEvidence, WhatNeighboursAreOffTogetherIsNoContradiction) {
+    // The image of the part is wavy by 6 mm, as a sensor's or a casting's surface may be; a hole of 40 mm is none of
+    // it.
+    const EstimatorOptions options = small_options(method_default(), 1);
+    const ObjectModel model = make_object_model(kPart, options);
+    const auto agreement = [&](bool with_hole, double shared_sigma_m) {
+        Mask mask;
+        DepthImage image = render(*kPart, truth_at(0), kCamera, 0.9F, &mask);
+        for (int pixel = 0; pixel < 160 * 120; ++pixel) {
+            if (mask.value[pixel] == 0) continue;
+            const double phase = 0.08 * (pixel % 160 + pixel / 160);
+            image.depth_m[pixel] += static_cast<float>(0.006 * std::sin(phase));
+            if (with_hole && (pixel / 160) % 40 < 12) image.depth_m[pixel] += 0.04F;
+        }
+        const Observation observation = make_observation(image, kCamera, mask);
+        const Frame frame{model, *kSolver, options, observation, std::nullopt, 1};
+        const ObservedGrid observed = observe(observation, {0, 0, 1, kCamera.width, kCamera.height});
+        const StepContext context = frame.context(observed, options.method.step);
+        return evidence_at(truth_at(0), context, options.method.refinement, frame, shared_sigma_m).judged.agreement();
+    };
+    EXPECT_LT(agreement(false, 0.0), 0.9);
+    EXPECT_GT(agreement(false, 0.004), 0.97);
+    EXPECT_LT(agreement(true, 0.004), 0.85) << "what is far off still contradicts";
 }
 
 TEST(Choose, ThePenaltyCanBeLeftOut) {

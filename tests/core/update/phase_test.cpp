@@ -152,6 +152,17 @@ TEST(Lock, KnownAlternativesAreComparedInEveryFrameWhileOneIsLeft) {
     }
 }
 
+TEST(Lock, ASearchIsWholeAtFirstAndSpreadOverFramesWhereNothingIsFoundForLong) {
+    const RelocalisationOptions options = method_default().relocalisation;
+    Lock lock;
+    double searches = 0.0;
+    for (int frame = 0; frame < options.whole_searches + options.parts_of_search; ++frame, ++lock.frames_contradicted)
+        searches += search_share(lock, options);
+    EXPECT_NEAR(searches, options.whole_searches + 1.0, 1e-9) << "the parts make one whole search";
+    EXPECT_EQ(search_share(Lock{}, options), 1.0);
+    EXPECT_LT(search_share(lock, options), 0.5);
+}
+
 TEST(Lock, AcceptedEvidenceFadesAndEndsWhereTheMotionIsNotKnown) {
     const Method method = method_default();
     EXPECT_DOUBLE_EQ(after_prediction(established(), true, method).accepted_evidence,
