@@ -105,6 +105,8 @@ void summarise_errors(const Frames& frames, double model_diameter_m, RunSummary&
             return kDegrees * std::abs(errors.rotation_in_camera_rad[axis]);
         });
     }
+    summary.depth_mm = statistics_over(
+        frames, [](const PoseErrors& errors) { return kMillimetres * errors.translation_in_camera_m.z(); });
     constexpr double kLargest_m = 0.1, kLargestOfDiameter = 0.1;
     summary.add_auc = area_under_recall(frames, &PoseErrors::add_m, kLargest_m);
     summary.add_s_auc = area_under_recall(frames, &PoseErrors::add_s_m, kLargest_m);

@@ -57,6 +57,7 @@ struct RunSummary {
     VerdictCounts verdicts;
     Statistics translation_mm, rotation_deg;
     Statistics translation_axis_mm[3], rotation_axis_deg[3];  // absolute values along the camera's x, y, z
+    Statistics depth_mm;                                      // estimate - truth along the camera's z, with its sign
     Statistics add_mm, add_s_mm, mssd_mm, mspd_px;
     double add_auc = 0.0,
            add_s_auc = 0.0;  // area under the recall curve of 0..100 mm, in 0..1, all frames after burn-in

@@ -24,6 +24,10 @@ VerdictCounts count_verdicts(const std::vector<FrameErrors>& frames, const Toler
         const FrameErrors& frame = frames[i];
         if (!frame.verdict) continue;
         ++counts.frames;
+        if (is_right(frame, {0.5 * tolerance.translation_m, 0.5 * tolerance.rotation_rad})) {
+            ++counts.well_within;
+            if (*frame.verdict == Verdict::kAccept) ++counts.well_within_accepts;
+        }
         if (*frame.verdict == Verdict::kContinue) ++counts.continues;
         if (*frame.verdict == Verdict::kLost) ++counts.lost;
         if (is_missed(frame, tolerance)) ++counts.missed;

@@ -60,6 +60,7 @@ void add_error_columns(const ErrorKind& error, std::vector<ColumnRule>& rules) {
 std::vector<ColumnRule> run_columns() {
     std::vector<ColumnRule> rules;
     for (const ErrorKind& error : kErrors) add_error_columns(error, rules);
+    rules.push_back({"depth_mean", "depth_mean", Pooling::kMean, "", 1.0, {"depth, signed", "mm", 2}});
     const auto add_share = [&](const char* name, const char* title) {
         rules.push_back({name, name, Pooling::kShare, "", 100.0, {title, "%", 0}});
     };
@@ -84,6 +85,7 @@ std::vector<ColumnRule> run_columns() {
     add_percent("without_pose", "frames without pose");
     add_percent("predicted", "frames predicted");
     add_percent("accepted", "frames accepted");
+    add_percent("accepted_of_right", "accepted of the right");
     add_percent("false_accepts", "falsely accepted");
     add_percent("false_accepts_of_accepts", "false among accepts");
     add_percent("lost_verdicts", "verdict lost");
@@ -167,6 +169,7 @@ void add_errors(const RunSummary& summary, Figures& figures) {
         add_statistics(std::string("translation_") + axes[axis], summary.translation_axis_mm[axis], figures);
         add_statistics(std::string("rotation_") + axes[axis], summary.rotation_axis_deg[axis], figures);
     }
+    if (summary.depth_mm.count > 0) figures["depth_mean"] = summary.depth_mm.mean;
     add_statistics("add", summary.add_mm, figures);
     add_statistics("add_s", summary.add_s_mm, figures);
     add_statistics("mssd", summary.mssd_mm, figures);
@@ -211,6 +214,8 @@ void add_verdicts(const evaluation::VerdictCounts& verdicts, Figures& figures) {
     figures["lost_verdicts"] = verdicts.lost / frames;
     if (verdicts.accepts > 0)
         figures["false_accepts_of_accepts"] = verdicts.false_accepts / static_cast<double>(verdicts.accepts);
+    if (verdicts.well_within > 0)
+        figures["accepted_of_right"] = verdicts.well_within_accepts / static_cast<double>(verdicts.well_within);
     if (verdicts.first_right_accept) figures["first_accept"] = *verdicts.first_right_accept + 1;
 }
 

@@ -6,6 +6,9 @@
 //   _held       the mean over the runs that are within 10 mm and 5 degrees in every frame after the burn-in
 //   _converged  over the runs whose median errors after the burn-in are within 10 mm and 5 degrees
 //   _median     translation_median: the median over runs of translation_mean, with the interval of its ranks
+// The errors along and about single axes count without their sign; depth_mean alone keeps it: where it is positive, the
+// estimate lies behind the truth.
+//
 // Shares of runs have Wilson's interval. Frames until something are medians in which a run that never gets there
 // counts as later than all others; where that is half of the runs, there is no value.
 //
@@ -15,6 +18,8 @@
 //
 // Verdicts are counted over all frames of a run, those of the burn-in and those without the part too:
 //   accepted, lost_verdicts   the shares of frames with that verdict
+//   accepted_of_right         of the frames whose pose is within half the tolerance, the share that is accepted; runs
+//                             without such frames are left out
 //   false_accepts             of frames accepted with a wrong pose: beyond tolerance_mm or tolerance_deg at the centre
 //                             of the box, or any pose in a frame that does not show the part
 //   false_accepts_of_accepts  the share of a run's accepts that are false; its mean leaves out runs without accepts

@@ -63,6 +63,10 @@ TEST(VerdictCounts, AreOfAllFrames) {
     EXPECT_EQ(counts.false_accepts, 2);
     EXPECT_EQ(counts.lost, 2);
     EXPECT_EQ(counts.first_right_accept, 3);
+    EXPECT_EQ(counts.well_within, 3);
+    EXPECT_EQ(counts.well_within_accepts, 1);
+    EXPECT_EQ(count_verdicts({frame_with(Verdict::kAccept, 0.0011)}, kTolerance).well_within, 0);
+    EXPECT_EQ(count_verdicts({frame_with(Verdict::kAccept, 0.0, 0.011)}, kTolerance).well_within, 0);
     EXPECT_EQ(count_verdicts({FrameErrors{}}, kTolerance).frames, 0);  // without a verdict
     EXPECT_EQ(count_verdicts({empty}, kTolerance).first_right_accept, std::nullopt);
 }

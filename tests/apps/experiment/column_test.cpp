@@ -76,12 +76,15 @@ TEST(Figures, OfVerdictsTheBurnInCountsToo) {
     EXPECT_DOUBLE_EQ(figures.at("false_accepts"), 1.0 / 6.0);
     EXPECT_DOUBLE_EQ(figures.at("false_accepts_of_accepts"), 1.0 / 3.0);
     EXPECT_DOUBLE_EQ(figures.at("lost_verdicts"), 2.0 / 6.0);
+    EXPECT_DOUBLE_EQ(figures.at("accepted_of_right"), 2.0 / 5.0);  // all but the first are within half the tolerance
     EXPECT_EQ(figures.at("first_accept"), 3.0);
     const Figures cautious = verdict_figures("ccc");
     EXPECT_DOUBLE_EQ(cautious.at("false_accepts"), 0.0);
     EXPECT_EQ(cautious.count("false_accepts_of_accepts"), 0U);
     EXPECT_EQ(cautious.count("first_accept"), 0U);
-    EXPECT_EQ(run_of({1, 1}, 0).figures.count("accepted"), 0U);  // nobody gave a verdict
+    EXPECT_DOUBLE_EQ(cautious.at("accepted_of_right"), 0.0);
+    EXPECT_EQ(verdict_figures("ff").count("accepted_of_right"), 0U);  // none is right
+    EXPECT_EQ(run_of({1, 1}, 0).figures.count("accepted"), 0U);       // nobody gave a verdict
 }
 
 TEST(Figures, WithoutThePartEveryAcceptIsFalseAndNothingElseIsKnown) {
@@ -89,8 +92,20 @@ TEST(Figures, WithoutThePartEveryAcceptIsFalseAndNothingElseIsKnown) {
     EXPECT_DOUBLE_EQ(figures.at("false_accepts"), 0.5);
     EXPECT_DOUBLE_EQ(figures.at("false_accepts_of_accepts"), 1.0);
     for (const char* name : {"arrives", "held", "stays", "first_within_3", "first_accept", "lost", "translation_mean",
-                             "add_auc", "frames_to_arrive"})
+                             "depth_mean", "accepted_of_right", "add_auc", "frames_to_arrive"})
         EXPECT_EQ(figures.count(name), 0U) << name;
+}
+
+TEST(Figures, TheDepthErrorAloneKeepsItsSign) {
+    std::vector<evaluation::FrameErrors> frames(2);
+    for (evaluation::FrameErrors& frame : frames) frame.errors.emplace();
+    frames[0].errors->translation_in_camera_m.z() = -0.003;
+    frames[1].errors->translation_in_camera_m.z() = 0.001;
+    evaluation::SummaryOptions options;
+    options.burn_in = 0;
+    const Figures figures = run_result(frames, {}, 0.2, options).figures;
+    EXPECT_DOUBLE_EQ(figures.at("depth_mean"), -1.0);
+    EXPECT_DOUBLE_EQ(figures.at("translation_z_mean"), 2.0);
 }
 
 TEST(Figures, FirstWithinThreeFrames) {

@@ -185,10 +185,12 @@ TEST(Description, ShippedOnesAreGood) {
     }
 }
 
-TEST(Description, ThatOfStereoSensorsIsGoodWhereTheyAreBuilt) {
-    const Description description = read_description("apps/experiments/stereo.json");
-    if (!simulate::stereo_is_built()) GTEST_SKIP() << "built without OpenCV: no stereo matching";
-    EXPECT_NO_THROW(check(description));
+TEST(Description, ThoseOfStereoSensorsAreGoodWhereTheyAreBuilt) {
+    for (const char* name : {"stereo.json", "reality.json"}) {
+        const Description description = read_description(std::filesystem::path("apps/experiments") / name);
+        if (!simulate::stereo_is_built()) GTEST_SKIP() << "built without OpenCV: no stereo matching";
+        EXPECT_NO_THROW(check(description)) << name;
+    }
 }
 
 }  // namespace
