@@ -40,6 +40,9 @@ const std::vector<std::string>& residual_names();
 //   confidence  an accepted pose yields to any better one, and its prediction is not fitted at once
 //   doubts      only a pose that the image contradicts is searched for anew
 //   economy     as many particles and rays in every frame as in the first
+//   presence    planes are no null hypothesis: neither for the choice of a mode nor for the verdict
+//   memory      alternatives are judged by each image alone
+//   shared_errors  the verdict's agreement allows for no errors that neighbouring rays share
 const std::vector<std::string>& parts_of_method();
 
 struct EstimatorSetup {

@@ -162,6 +162,7 @@ void validate(const VerificationOptions& options) {
     check_option("verification.min_overlap", options.min_overlap, 0.0, 1.0);
     check_option("verification.max_coplanar_share", options.max_coplanar_share, 0.0, 1.0);
     check_option("verification.max_alternatives_weight", options.max_alternatives_weight, 0.0, 1.0);
+    check_option("verification.shared_errors_allowed", options.shared_errors_allowed, 0.0, 100.0);
     check_option("verification.contradicted_below", options.contradicted_below, 0.0, 1.0);
     check_option("verification.lost_below", options.lost_below, 0.0, 1.0);
 }

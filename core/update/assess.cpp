@@ -63,7 +63,8 @@ Assessment assess(UpdateResult& result, const Belief& belief, const std::optiona
         observability_of(observed.value_or(kOneMetre * Matrix6d::Identity()), 0.5 * frame.model.diameter_m(),
                          frame.options.tolerance.translation_m, frame.model.symmetries, centre);
     describe_modes(result.modes, observed, context, frame);
-    const PoseEvidence shown = evidence_at(pose, context, refinement, frame, fit ? fit->shared_sigma_m : 0.0);
+    const PoseEvidence shown = evidence_at(pose, context, refinement, frame,
+                                           fit ? method.verification.shared_errors_allowed * fit->shared_sigma_m : 0.0);
     result.pixels = shown.judged;
     result.positive_evidence = shown.positive;
     result.log_odds_present = log_odds_with(shown.log_odds_present, belief.lock, method.presence);

@@ -25,6 +25,15 @@ std::vector<Mode> interleaved(const std::vector<Mode>& modes, const std::vector<
     return all;
 }
 
+// What speaks for planes alone where a pose puts the object [pixels that cost 1].
+double cost_of_absence(const Pose& pose, const RefinementOptions& refinement, const Frame& frame) {
+    const PreselectionOptions& options = frame.method().preselection;
+    if (options.presence_rays == 0) return 0.0;
+    const ObservedGrid around = observe(frame.observation, ray_grid(frame, pose, options.rays));
+    const PoseEvidence shown = evidence_at(pose, frame.context(around, frame.method().step), refinement, frame);
+    return std::max(0.0, -shown.positive.total()) * around.grid.stride * around.grid.stride;
+}
+
 // The particles' modes and the hypotheses from pairs that explain most of the image. Each is refined a little first, on
 // few rays where it puts the object: before that a wrong one may score better than the right one.
 std::vector<Mode> preselect(const std::vector<Mode>& particles, const Situation& situation, const Frame& frame,
@@ -45,13 +54,9 @@ std::vector<Mode> preselect(const std::vector<Mode>& particles, const Situation&
         const Pose& pose = modes[k].camera_from_object;
         const ObservedGrid observed = observe(frame.observation, ray_grid_on_model(frame, pose, options.rays));
         moved[k] = refine_mode(pose, frame.context(observed, frame.method().step), refinement);
-        const ObservedGrid around =
-            observe(frame.observation, ray_grid(frame, moved[k].camera_from_object, options.rays));
-        const PoseEvidence shown =
-            evidence_at(moved[k].camera_from_object, frame.context(around, frame.method().step), refinement, frame);
-        const double absent = std::min(0.0, shown.positive.total()) * around.grid.stride * around.grid.stride;
         modes[k] =
-            mode_at(moved[k].camera_from_object, -moved[k].gain * observed.grid.stride * observed.grid.stride - absent);
+            mode_at(moved[k].camera_from_object, -moved[k].gain * observed.grid.stride * observed.grid.stride +
+                                                     cost_of_absence(moved[k].camera_from_object, refinement, frame));
     });
     for (const RefinedMode& mode : moved) ledger.add(mode.counts, mode.seconds);
     ledger.budget.took(Stage::kPreselection, count, watch.elapsed_s());

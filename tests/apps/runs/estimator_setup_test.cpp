@@ -39,6 +39,10 @@ TEST(EstimatorSetup, LeavesOneNamedPartOut) {
     EXPECT_EQ(without("pairs").search.initialisation, Initialisation::kSurface);
     EXPECT_EQ(without("rivals").hypotheses.alternatives, 0);
     EXPECT_LT(without("presence").verification.min_log_odds_present, -1e6);
+    EXPECT_EQ(without("presence").preselection.presence_rays, 0);
+    EXPECT_EQ(without("memory").choice.log_odds_kept, 0.0);
+    EXPECT_EQ(without("shared_errors").verification.shared_errors_allowed, 0.0);
+    EXPECT_GT(whole.verification.shared_errors_allowed * whole.choice.log_odds_kept, 0.0);
     EXPECT_FALSE(without("confidence").choice.accepted_evidence);
     EXPECT_FALSE(without("doubts").relocalisation.low_agreement);
     EXPECT_THROW(without("wheels"), std::invalid_argument);
