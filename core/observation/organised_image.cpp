@@ -27,8 +27,7 @@ void set_states(const float* depth_m, const std::uint8_t* mask, std::size_t coun
 
 void set_states(const float* depth_m, std::size_t count, PixelState* states) {
     constexpr auto kCandidate = static_cast<std::uint8_t>(PixelState::kCandidate);
-    for (std::size_t p = 0; p < count; ++p)
-        states[p] = static_cast<PixelState>(depth_m[p] > 0.0F ? kCandidate : 0);
+    for (std::size_t p = 0; p < count; ++p) states[p] = static_cast<PixelState>(depth_m[p] > 0.0F ? kCandidate : 0);
 }
 
 int count_candidates(const PixelState* states, int count) {
