@@ -84,7 +84,7 @@ struct RelocalisationOptions {
     int low_agreement_at_first = 4;  // in so many frames,
     int low_agreement_period = 16;   // and later once in so many
     // After so many frames in a row that showed nothing of it, a search is spread over frames: each of them makes a
-    // part of it with other draws. So the time until the object is found again stays the same, and no frame takes long.
+    // part of it with other draws. Where the part is not there, a frame takes a quarter of the time or less.
     int whole_searches = 4;
     int parts_of_search = 8;
 };
@@ -103,7 +103,8 @@ struct PhaseEffort {
 struct AdaptiveEffort {
     bool on = false;
     int frames_to_confirm = 5;  // without replacement, after which the track is confirmed
-    // With fewer rays of refinement the flange is not told from its half turn.
+    // With 2000 rays of refinement a flange's alternatives in clutter keep 20 to 70 % of the probability, with all 3
+    // to 30 %.
     PhaseEffort comparing{.particle_rays = 128, .mode_rays = 100000, .mode_rounds = 3, .alternatives = 100000};
     // As many alternatives as the method says. With 800 rays of refinement a tenth fewer frames are accepted.
     PhaseEffort confirming{.particle_rays = 128, .mode_rays = 2000, .mode_rounds = 3, .alternatives = 100000};

@@ -47,7 +47,7 @@ struct VerificationOptions {
     double max_coplanar_share = 0.4;
     double max_alternatives_weight = 0.01;  // of the probability
     // In the agreement, residuals may be larger than the noise by so many of what the joint fit finds neighbouring rays
-    // to be off together. Without it 26 instead of 100 % of a real sequence with a rough CAD are accepted.
+    // to be off together. Without it 30 instead of 100 % of a real sequence with a rough CAD are accepted.
     double shared_errors_allowed = 1.0;
     // Agreement below which the image contradicts the pose, so that the object is searched for anew.
     double contradicted_below = 0.8;

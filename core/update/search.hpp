@@ -6,7 +6,7 @@
 
 namespace nearpose {
 
-// Draws poses from what is seen; the best become the particles.
+// Draws poses from what is seen; the best become the particles. `plan` says which share of a whole search is made.
 SearchResult search(const Plan& plan, const Frame& frame, Ledger& ledger);
 
 }  // namespace nearpose
