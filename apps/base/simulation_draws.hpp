@@ -25,5 +25,6 @@ inline constexpr auto kNonsenseDraw = static_cast<RandomPurpose>(133);       // 
 inline constexpr auto kMoveDraw = static_cast<RandomPurpose>(134);           // where the part is put down elsewhere
 inline constexpr auto kStandInDraw = static_cast<RandomPurpose>(135);        // how another part lies in its place
 inline constexpr auto kBareSceneDraw = static_cast<RandomPurpose>(136);      // where a corner stands
+inline constexpr auto kFaultDraw = static_cast<RandomPurpose>(137);          // what a fault does in a frame
 
 }  // namespace nearpose::simulate

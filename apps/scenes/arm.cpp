@@ -11,14 +11,6 @@ namespace {
 
 constexpr double kReach_m = 1.0;  // the object's place in the world, along each axis
 
-Pose hand_eye_error(const ArmErrors& errors, std::uint64_t seed) {
-    RandomStream random(seed, 0, 0, kHandEyeDraw);
-    Twist twist;
-    twist.head<3>() = errors.hand_eye_rotation_rad * random.direction();
-    twist.tail<3>() = errors.hand_eye_translation_m * random.direction();
-    return exp(twist);
-}
-
 Pose frame_error(const ArmErrors& errors, std::uint64_t seed, std::uint64_t frame) {
     RandomStream random(seed, frame, 0, kArmDraw);
     Twist twist;
@@ -26,15 +18,6 @@ Pose frame_error(const ArmErrors& errors, std::uint64_t seed, std::uint64_t fram
         twist[i] = (i < 3 ? errors.sigma_rotation_rad : errors.sigma_translation_m) * random.gaussian();
     }
     return exp(twist);
-}
-
-// The pose of the path at `place`, counted in frames: between two frames on the geodesic, beyond the ends with the
-// velocity of the last step.
-Pose pose_at(const std::vector<Pose>& path, double place) {
-    if (path.size() < 2) return path.front();
-    const double before = std::clamp(std::floor(place), 0.0, static_cast<double>(path.size() - 2));
-    const auto index = static_cast<std::size_t>(before);
-    return interpolate(path[index], path[index + 1], place - before);
 }
 
 }  // namespace
@@ -60,11 +43,26 @@ std::vector<Pose> measured_motion(const std::vector<Pose>& camera_from_scene, co
     std::vector<Pose> camera_from_world;
     camera_from_world.reserve(camera_from_scene.size());
     for (std::size_t frame = 0; frame < camera_from_scene.size(); ++frame) {
-        const Pose true_pose =
-            offset == 0.0 ? camera_from_scene[frame] : pose_at(camera_from_scene, static_cast<double>(frame) + offset);
+        const Pose true_pose = offset == 0.0 ? camera_from_scene[frame]
+                                             : pose_on_path(camera_from_scene, static_cast<double>(frame) + offset);
         camera_from_world.push_back(frame_error(errors, seed, frame) * hand_eye * true_pose * scene_from_world);
     }
     return camera_from_world;
+}
+
+Pose hand_eye_error(const ArmErrors& errors, std::uint64_t seed) {
+    RandomStream random(seed, 0, 0, kHandEyeDraw);
+    Twist twist;
+    twist.head<3>() = errors.hand_eye_rotation_rad * random.direction();
+    twist.tail<3>() = errors.hand_eye_translation_m * random.direction();
+    return exp(twist);
+}
+
+Pose pose_on_path(const std::vector<Pose>& path, double place) {
+    if (path.size() < 2) return path.front();
+    const double before = std::clamp(std::floor(place), 0.0, static_cast<double>(path.size() - 2));
+    const auto index = static_cast<std::size_t>(before);
+    return interpolate(path[index], path[index + 1], place - before);
 }
 
 }  // namespace nearpose::simulate

@@ -29,4 +29,11 @@ void validate(const ArmErrors& errors);
 std::vector<Pose> measured_motion(const std::vector<Pose>& camera_from_scene, const ArmErrors& errors,
                                   std::uint64_t seed, double frames_per_second = 30.0);
 
+// X of the errors alone.
+Pose hand_eye_error(const ArmErrors& errors, std::uint64_t seed);
+
+// The pose of a path (at least one pose) at `place`, counted in frames: between two frames on the geodesic, beyond the
+// ends with the velocity of the last step.
+Pose pose_on_path(const std::vector<Pose>& path, double place);
+
 }  // namespace nearpose::simulate

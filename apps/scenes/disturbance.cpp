@@ -12,14 +12,6 @@ namespace {
 
 constexpr int kQuietFrames = 3;  // at the beginning, for the tracker to find the part
 
-void refuse_moving_parts(bool asked, const char* what, Scenario scenario) {
-    constexpr Scenario kStill[] = {Scenario::kBaseline, Scenario::kPiston, Scenario::kCrankcase, Scenario::kSweep,
-                                   Scenario::kHandheld};
-    if (!asked || std::find(std::begin(kStill), std::end(kStill), scenario) != std::end(kStill)) return;
-    throw std::invalid_argument(std::string(what) + " needs a part that stands still and alone: take the scenario " +
-                                "baseline, piston, crankcase, sweep or handheld, not " + name_of(scenario));
-}
-
 int first_away(const Disturbances& disturbances, int num_frames) {
     return (num_frames - disturbances.look_away) / 2;
 }
@@ -76,10 +68,18 @@ SceneContent scene_content_of(const std::string& name) {
     throw std::invalid_argument("'" + name + "' is no content of a scene; there are " + known);
 }
 
+void refuse_moving_parts(const char* what, Scenario scenario) {
+    constexpr Scenario kStill[] = {Scenario::kBaseline, Scenario::kPiston, Scenario::kCrankcase, Scenario::kSweep,
+                                   Scenario::kHandheld};
+    if (std::find(std::begin(kStill), std::end(kStill), scenario) != std::end(kStill)) return;
+    throw std::invalid_argument(std::string(what) + " needs a part that stands still and alone: take the scenario " +
+                                "baseline, piston, crankcase, sweep or handheld, not " + name_of(scenario));
+}
+
 void validate(const Disturbances& disturbances, Scenario scenario, int num_frames, int num_delivered) {
-    refuse_moving_parts(disturbances.look_away > 0, "look_away", scenario);
-    refuse_moving_parts(disturbances.object_moves, "object_moves", scenario);
-    refuse_moving_parts(disturbances.scene != SceneContent::kPart, "a scene without the part", scenario);
+    if (disturbances.look_away > 0) refuse_moving_parts("look_away", scenario);
+    if (disturbances.object_moves) refuse_moving_parts("object_moves", scenario);
+    if (disturbances.scene != SceneContent::kPart) refuse_moving_parts("a scene without the part", scenario);
     if (disturbances.scene != SceneContent::kPart && (disturbances.look_away > 0 || disturbances.object_moves))
         throw std::invalid_argument("look_away and object_moves are of a part that is there: leave out the scene");
     check_option("look_away (of the middle third of the frames)", disturbances.look_away, 0, num_frames / 3);

@@ -36,6 +36,9 @@ struct Disturbances {
     SceneContent scene = SceneContent::kPart;
 };
 
+// Throws std::invalid_argument, which says that `what` needs a still part, unless the scenario has one that is alone.
+void refuse_moving_parts(const char* what, Scenario scenario);
+
 // `num_delivered` of the `num_frames` are not dropped. Throws std::invalid_argument naming what is wrong and why.
 void validate(const Disturbances& disturbances, Scenario scenario, int num_frames, int num_delivered);
 

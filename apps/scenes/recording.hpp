@@ -14,6 +14,7 @@
 #include "apps/depth_sensor/stereo_sensor.hpp"
 #include "apps/scenes/arm.hpp"
 #include "apps/scenes/disturbance.hpp"
+#include "apps/scenes/fault.hpp"
 #include "apps/scenes/mask_errors.hpp"
 #include "apps/scenes/scenario.hpp"
 #include "core/base/camera.hpp"
@@ -44,6 +45,7 @@ struct RecordingOptions {
     MaskErrors mask;                // of given_mask
     double dropped_fraction = 0.0;  // of the frames, never the first
     Disturbances disturbances;
+    std::vector<Fault> faults;  // in the order in which they act
     bool with_table = true;
     // One of part_names(): its object number goes into the truth, and other built-in parts of the scene are told too.
     // Empty: a part of the user's own, object 1.
@@ -53,8 +55,9 @@ struct RecordingOptions {
 // Throws std::invalid_argument naming field, value and bound.
 void validate(const RecordingOptions& options);
 
-// How many frames are dropped, by dropped_fraction.
-int num_dropped(const RecordingOptions& options);
+// How many frames the path has, and how many of them are delivered: not dropped.
+int frames_on_path(const RecordingOptions& options);
+int num_delivered(const RecordingOptions& options);
 
 // Another part in the image that the truth speaks of: a copy, or another built-in part.
 struct OtherInstance {
@@ -63,10 +66,13 @@ struct OtherInstance {
     data_set::ObjectTruth truth;
 };
 
+// With faults depth, given mask, stamp, intrinsics and the arm's pose are as such a set-up delivers them; all else is
+// of what the frame should have shown.
 struct SimulatedFrame {
     int id = 0;  // place on the path; dropped frames leave gaps
     double stamp_s = 0.0;
-    DepthImage depth;  // measured, in whole counts of the depth scale
+    PinholeCamera camera;  // as it is written: RecordingOptions::camera but for faults
+    DepthImage depth;      // measured, in whole counts of the depth scale
     // What depth was matched from, where it was and RecordingOptions::keep_infrared asks for it.
     std::optional<InfraredPair> infrared;
     Mask visible;     // exact: pixels that show the part; of a frame of nonsense: that would
@@ -75,6 +81,7 @@ struct SimulatedFrame {
     Mask given_mask;
     bool nonsense = false;    // the depth is not of the scene
     bool part_moved = false;  // the part lies elsewhere than in the first frame
+    bool faulty = false;      // one of the recording's faults has this frame
     Pose camera_from_object;
     Pose camera_from_world;  // as the arm reports it, with its errors
     data_set::ObjectTruth truth;
@@ -84,7 +91,8 @@ struct SimulatedFrame {
 };
 
 // Draws the path, the sensor and the arm when it is constructed. Immutable; frame may be called from several threads at
-// once, and the same options give the same bits whatever was asked before.
+// once, and the same options give the same bits whatever was asked before. Where remembers_images() holds, a frame that
+// is not asked for after the one before it takes the time of all before it.
 class Recording {
   public:
     Recording(const Mesh& mesh, const Part& part, const RecordingOptions& options);

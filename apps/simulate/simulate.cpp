@@ -38,7 +38,7 @@ data_set::FrameRecord write_frame(const Recording& recording, int index, const f
     const SimulatedFrame frame = recording.frame(index);
     data_set::FrameRecord record;
     record.id = frame.id;
-    record.camera = recording.options().camera;
+    record.camera = frame.camera;
     record.depth_scale_mm = recording.options().depth_scale_mm;
     record.camera_from_world = frame.camera_from_world;
     record.timestamp_s = frame.stamp_s;
@@ -143,7 +143,8 @@ SimulationSummary write_data_set(const Mesh& mesh, const Part& part, const Simul
     const fs::path scene_folder = staged.path() / "test" / "000001";
     SimulationSummary summary;
     std::vector<data_set::FrameRecord> records;
-    if (!write_frames(recording, scene_folder, options.num_threads, frame_done, records)) return summary;
+    const int num_threads = remembers_images(options.recording.faults) ? 1 : options.num_threads;  // in their order
+    if (!write_frames(recording, scene_folder, num_threads, frame_done, records)) return summary;
 
     data_set::BopSceneWriter writer(scene_folder);
     for (const data_set::FrameRecord& record : records) {

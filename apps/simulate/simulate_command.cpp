@@ -50,6 +50,7 @@ struct SimulateOptions {
     double time_offset_ms = 0.0;
 
     simulate::MaskErrors mask;
+    std::vector<std::string> faults;
 };
 
 double radians(double degrees) {
@@ -120,6 +121,12 @@ SimulationOptions simulation_options(const SimulateOptions& command) {
     recording.dropped_fraction = command.drop_frames;
     recording.with_table = !command.no_table;
     if (command.model.model.empty()) recording.part_name = command.part;
+    try {
+        for (const std::string& fault : command.faults) recording.faults.push_back(simulate::parse_fault(fault));
+        simulate::validate(recording);
+    } catch (const std::invalid_argument& error) {
+        throw BadUse(error.what());
+    }
     return options;
 }
 
@@ -136,8 +143,7 @@ simulate::EmbeddedPart part_of(const SimulateOptions& command, bool part_given, 
 int simulate_recording(const SimulateOptions& command, bool part_given, const SharedOptions& shared) {
     const SimulationOptions options = simulation_options(command);
     const simulate::EmbeddedPart part = part_of(command, part_given, shared);
-    const int frames = command.frames == 0 ? simulate::default_frames(options.recording.scenario) : command.frames;
-    Progress progress("simulate", frames - simulate::num_dropped(options.recording), shared.quiet);
+    Progress progress("simulate", simulate::num_delivered(options.recording), shared.quiet);
     const simulate::SimulationSummary summary = simulate::write_data_set(part.mesh, part.part, options, [&progress] {
         progress.step();
         return !interrupted();
@@ -241,6 +247,18 @@ void add_arm_options(CLI::App& command, SimulateOptions& options) {
         10000);
 }
 
+void add_fault_option(CLI::App& command, SimulateOptions& options) {
+    command
+        .add_option(
+            "--fault", options.faults,
+            "A fault of the set-up in frames such as 10-39, 10- (to the end), 20 or all; may be given again. The "
+            "truth stays that of what the frames should have shown")
+        ->type_name("NAME[:VALUE]@FRAMES")
+        ->default_str("")
+        ->group("Faults");
+    command.footer("Faults, in the order in which they are given:\n" + simulate::described_faults());
+}
+
 }  // namespace
 
 void add_simulate_command(CLI::App& app, const SharedOptions& shared, Run& run) {
@@ -253,6 +271,7 @@ void add_simulate_command(CLI::App& app, const SharedOptions& shared, Run& run) 
     const CLI::Option* part = add_part_options(*command, *options);
     add_sensor_options(*command, *options);
     add_arm_options(*command, *options);
+    add_fault_option(*command, *options);
     command->callback([options, part, &shared, &run] {
         const bool part_given = part->count() > 0;
         run = [options, part_given, &shared] { return simulate_recording(*options, part_given, shared); };

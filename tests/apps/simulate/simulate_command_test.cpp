@@ -33,7 +33,10 @@ TEST(SimulateCommand, BadCombinationsAreBadUse) {
           Case{"--scenario baseline --conveyor-mm 3", "--scenario conveyor"},
           Case{"--conveyor-deg 0.5", "--scenario conveyor"}, Case{"--trajectory /dev/null", "--trajectory"},
           Case{"--scenario handhold", "handheld"}, Case{"--part gearbox", "flange"}, Case{"--unit mm", "--model"},
-          Case{"--drop-frames 1", "--drop-frames"}, Case{"--scenario clutter --occlusion 0.9", "--occlusion"}}) {
+          Case{"--drop-frames 1", "--drop-frames"}, Case{"--scenario clutter --occlusion 0.9", "--occlusion"},
+          Case{"--fault frozne@all", "rotated:DEGREES (the camera is mounted turned"},
+          Case{"--fault frozen@all --fault holes:2@all", "holes:SHARE"},
+          Case{"--frames 40 --fault frozen@10-40", "0 to 39"}, Case{"--fault dropped@all", "leaves no frame"}}) {
         const Outcome outcome = run_nearpose("simulate " + std::string(bad.options) + out);
         EXPECT_EQ(outcome.exit_code, 2) << bad.options << outcome.err;
         EXPECT_NE(outcome.err.find(bad.told), std::string::npos) << outcome.err;
@@ -83,6 +86,31 @@ TEST(SimulateCommand, InfraredImagesAreOfSensorsThatMatchThem) {
     ASSERT_EQ(light.exit_code, 0) << light.err;
     EXPECT_EQ(data_set::read_png_size(folder / "set/test/000001/depth/000000.png").width, 96);
     EXPECT_EQ(data_set::read_png_size(folder / "set/test/000001/infrared_right/000000.png").width, 96 + 20);
+}
+
+TEST(SimulateCommand, WritesWhatASetUpWithTheFaultsWouldAndTheTruthAsItIs) {
+    const fs::path folder = fresh_folder("faults");
+    data_set::write_camera_json(folder / "camera.json", {96, 72, 90.0, 90.0, 47.5, 35.5}, 0.1);
+    const std::string command = "simulate --quiet --frames 5 --part bracket --no-symmetries --camera " +
+                                (folder / "camera.json").string() + " --out ";
+    ASSERT_EQ(run_nearpose(command + (folder / "plain").string()).exit_code, 0);
+    const Outcome faulty = run_nearpose(command + (folder / "faulty").string() +
+                                        " --fault frozen@2-3 --fault focal:10@all --fault temporal-filter:0.4@4");
+    ASSERT_EQ(faulty.exit_code, 0) << faulty.err;
+    const auto text = [&](const char* set, const std::string& file) {
+        return read_text(folder / set / "test/000001" / file);
+    };
+    for (const char* same : {"scene_gt.json", "scene_gt_info.json", "depth/000001.png", "mask/000003_000000.png"})
+        EXPECT_EQ(text("plain", same), text("faulty", same)) << same;
+    for (const char* frozen : {"depth/000002.png", "depth/000003.png"})
+        EXPECT_EQ(text("faulty", frozen), text("plain", "depth/000001.png"));
+    EXPECT_EQ(text("faulty", "depth/000004.png"), text("plain", "depth/000004.png"));  // nothing to mix it with
+    const data_set::JsonFile cameras(folder / "faulty/test/000001/scene_camera.json");
+    EXPECT_DOUBLE_EQ(cameras.root().at("3").at("cam_K").elements().at(0).number(), 99.0);
+    EXPECT_DOUBLE_EQ(data_set::read_camera_json(folder / "faulty/camera.json").camera.fx, 99.0);
+    const Outcome help = run_nearpose("help simulate");
+    for (const char* name : {"--fault", "temporal-filter:ALPHA", "arm-transposed", "the truth follows"})
+        EXPECT_NE(help.out.find(name), std::string::npos) << name;
 }
 
 // A square column: four turns about its axis and half turns about axes across.
