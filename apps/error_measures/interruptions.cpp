@@ -1,5 +1,7 @@
 #include "apps/error_measures/interruptions.hpp"
 
+#include <algorithm>
+
 namespace nearpose::evaluation {
 
 std::vector<bool> excused_frames(const std::vector<FrameErrors>& frames) {
@@ -22,6 +24,13 @@ std::optional<int> return_index(const std::vector<FrameErrors>& frames) {
         gone = seen && frames[i].shown == Shown::kNothing;
     }
     return std::nullopt;
+}
+
+std::optional<int> end_of_fault(const std::vector<FrameErrors>& frames) {
+    const auto last =
+        std::find_if(frames.rbegin(), frames.rend(), [](const FrameErrors& frame) { return frame.faulty; });
+    if (last == frames.rend() || last == frames.rbegin()) return std::nullopt;
+    return static_cast<int>(last.base() - frames.begin());
 }
 
 }  // namespace nearpose::evaluation

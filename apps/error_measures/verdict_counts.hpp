@@ -18,6 +18,7 @@ struct VerdictCounts {
     int lost = 0;
     int missed = 0;                         // of the lost
     std::optional<int> first_right_accept;  // index into the frames
+    std::optional<int> frames_to_recover;   // from the end of faults (interruptions.hpp) to the next right accept
     // Frames whose pose is within half the tolerance, and of them the accepted: an estimator that knows its errors
     // accepts these, while near the tolerance itself it may as well not.
     int well_within = 0, well_within_accepts = 0;

@@ -78,6 +78,8 @@ std::vector<ColumnRule> run_columns() {
     add_frames("frames_to_fine", "until 2 mm, 1 deg");
     add_frames("frames_to_refind", "until found again");
     add_frames("first_accept", "until the first right accept");
+    add_frames("frames_to_recover", "from the fault's end to a right accept");
+    rules.push_back({"accepted_wrong", "accepted_wrong", Pooling::kMean, "", 1.0, {"accepted wrong", "frames", 1}});
     const auto add_percent = [&](const char* name, const char* title) {
         rules.push_back({name, name, Pooling::kMean, "", 100.0, {title, "%", 1}});
     };
@@ -212,10 +214,12 @@ void add_verdicts(const evaluation::VerdictCounts& verdicts, Figures& figures) {
     figures["accepted"] = verdicts.accepts / frames;
     figures["false_accepts"] = verdicts.false_accepts / frames;
     figures["lost_verdicts"] = verdicts.lost / frames;
+    figures["accepted_wrong"] = verdicts.false_accepts;
     if (verdicts.accepts > 0)
         figures["false_accepts_of_accepts"] = verdicts.false_accepts / static_cast<double>(verdicts.accepts);
     if (verdicts.well_within > 0)
         figures["accepted_of_right"] = verdicts.well_within_accepts / static_cast<double>(verdicts.well_within);
+    if (verdicts.frames_to_recover) figures["frames_to_recover"] = *verdicts.frames_to_recover;
     if (verdicts.first_right_accept) figures["first_accept"] = *verdicts.first_right_accept + 1;
 }
 

@@ -23,7 +23,10 @@
 //   false_accepts             of frames accepted with a wrong pose: beyond tolerance_mm or tolerance_deg at the centre
 //                             of the box, or any pose in a frame that does not show the part
 //   false_accepts_of_accepts  the share of a run's accepts that are false; its mean leaves out runs without accepts
+//   accepted_wrong            the number of frames that are false accepts
 //   first_accept              frames up to and with the first accept that is right
+//   frames_to_recover         frames after the last one with a fault, up to and with the first accept that is right; of
+//                             runs whose fault ends before they do
 //   frames_to_refind          frames from the one that shows the part again, or where it lies elsewhere, up to and with
 //                             the first within 10 mm and 5 degrees
 //   first_within_3            the share of runs within 10 mm and 5 degrees in one of the first three frames

@@ -21,13 +21,14 @@ struct Lane {
 // What the estimators are given of one frame: made when it is first wanted.
 class FrameInput {
   public:
-    FrameInput(const simulate::SimulatedFrame& frame, const PinholeCamera& camera) : frame_(frame), camera_(camera) {}
+    explicit FrameInput(const simulate::SimulatedFrame& frame) : frame_(frame) {}
 
     const Observation& observation(bool with_mask) {
         std::optional<Observation>& made = observations_[with_mask ? 1 : 0];
         if (!made) {
             const double begin = thread_cpu_s();
-            made = make_observation(frame_.depth, camera_, with_mask ? std::optional(frame_.given_mask) : std::nullopt);
+            made = make_observation(frame_.depth, frame_.camera,
+                                    with_mask ? std::optional(frame_.given_mask) : std::nullopt);
             cpu_s_[with_mask ? 1 : 0] = thread_cpu_s() - begin;
         }
         return *made;
@@ -36,13 +37,13 @@ class FrameInput {
 
   private:
     const simulate::SimulatedFrame& frame_;
-    const PinholeCamera& camera_;
     std::optional<Observation> observations_[2];
     double cpu_s_[2] = {0.0, 0.0};  // that making them took
 };
 
 evaluation::TrueFrame truth_of(const simulate::SimulatedFrame& frame, const PinholeCamera& camera) {
     evaluation::TrueFrame truth{frame.id, frame.camera_from_object, {}};
+    truth.faulty = frame.faulty;
     if (!frame.shows_part()) {
         truth.shown = frame.nonsense ? evaluation::Shown::kNonsense : evaluation::Shown::kNothing;
         return truth;
@@ -129,7 +130,7 @@ std::vector<CellResult> run_recording(const std::vector<Settings>& settings, std
         std::optional<Pose> now_from_before;
         if (camera_from_world_before) now_from_before = frame.camera_from_world * camera_from_world_before->inverse();
         camera_from_world_before = frame.camera_from_world;
-        FrameInput input(frame, camera);
+        FrameInput input(frame);
         for (Lane& lane : lanes) track(lane, input, now_from_before, truth, assets.shape, camera);
     }
     std::vector<CellResult> results;

@@ -172,6 +172,8 @@ simulate::RecordingOptions recording_options(const Settings& settings, std::uint
     options.mask = {static_cast<int>(number(settings, "mask_grow")), static_cast<int>(number(settings, "mask_bleed"))};
     options.dropped_fraction = number(settings, "dropped");
     options.disturbances = disturbances_of(settings);
+    const std::string fault = setting<std::string>(settings, "fault").value_or(kNoFault);
+    if (fault != kNoFault) options.faults.push_back(simulate::parse_fault(fault));
     options.with_table = flag(settings, "table");
     options.part_name = setting<std::string>(settings, "part").value_or("");
     return options;

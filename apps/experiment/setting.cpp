@@ -63,6 +63,7 @@ void add_recording_rules(std::vector<SettingRule>& rules) {
     add_later("nonsense_frames", SettingType::kWhole, 1e5, {}, 0.0);
     add_later("look_away", SettingType::kWhole, 1e5, {}, 0.0);  // frames
     add_later("object_moves", SettingType::kFlag, 0.0, {}, false);
+    add_later("fault", SettingType::kWord, 0.0, {}, kNoFault);  // as `simulate --fault` takes it
 }
 
 void add_estimator_rules(std::vector<SettingRule>& rules) {

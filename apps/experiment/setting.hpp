@@ -15,6 +15,9 @@ namespace nearpose::experiment {
 // Tolerance of the verdict, where nothing else is set: tolerance_mm and tolerance_deg.
 inline constexpr double kTolerance_mm = 2.0, kTolerance_deg = 1.0;
 
+// Of the setting fault, where there is none.
+inline const std::string kNoFault = "none";
+
 // What the cells of a table are: a recording that an estimator tracks, or the views of a generator by themselves.
 enum class TableKind { kRun, kViews };
 

@@ -56,6 +56,19 @@ TEST(Interruptions, TheReturnIsWhereThePartIsBackOrElsewhere) {
     EXPECT_EQ(return_index(frames_of("gg000")), std::nullopt);
 }
 
+TEST(Interruptions, FaultsEndWithTheLastFrameThatHasOne) {
+    const auto end = [](const std::string& faulty) {
+        std::vector<FrameErrors> frames(faulty.size());
+        for (std::size_t i = 0; i < faulty.size(); ++i) frames[i].faulty = faulty[i] == 'f';
+        return end_of_fault(frames);
+    };
+    EXPECT_EQ(end("..ff.."), 4);
+    EXPECT_EQ(end("f.f..."), 3);
+    EXPECT_EQ(end("......"), std::nullopt);
+    EXPECT_EQ(end("...fff"), std::nullopt);
+    EXPECT_EQ(end(""), std::nullopt);
+}
+
 TEST(Interruptions, FramesToRefindCountFromTheReturn) {
     EXPECT_EQ(summary_of("gg00gg").frames_to_refind, 1);
     EXPECT_EQ(summary_of("ggBbbgg").frames_to_refind, 4);

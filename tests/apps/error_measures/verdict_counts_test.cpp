@@ -71,5 +71,16 @@ TEST(VerdictCounts, AreOfAllFrames) {
     EXPECT_EQ(count_verdicts({empty}, kTolerance).first_right_accept, std::nullopt);
 }
 
+TEST(VerdictCounts, RecoveryIsARightAcceptAfterTheFault) {
+    std::vector<FrameErrors> frames = {frame_with(Verdict::kAccept, 0.0), frame_with(Verdict::kAccept, 0.0),
+                                       frame_with(Verdict::kLost, 0.0), frame_with(Verdict::kAccept, 0.01),
+                                       frame_with(Verdict::kAccept, 0.001)};
+    EXPECT_EQ(count_verdicts(frames, kTolerance).frames_to_recover, std::nullopt);
+    frames[1].faulty = true;
+    EXPECT_EQ(count_verdicts(frames, kTolerance).frames_to_recover, 3);
+    frames.pop_back();
+    EXPECT_EQ(count_verdicts(frames, kTolerance).frames_to_recover, std::nullopt);
+}
+
 }  // namespace
 }  // namespace nearpose::evaluation

@@ -75,6 +75,7 @@ TEST(Figures, OfVerdictsTheBurnInCountsToo) {
     EXPECT_DOUBLE_EQ(figures.at("accepted"), 3.0 / 6.0);
     EXPECT_DOUBLE_EQ(figures.at("false_accepts"), 1.0 / 6.0);
     EXPECT_DOUBLE_EQ(figures.at("false_accepts_of_accepts"), 1.0 / 3.0);
+    EXPECT_EQ(figures.at("accepted_wrong"), 1.0);
     EXPECT_DOUBLE_EQ(figures.at("lost_verdicts"), 2.0 / 6.0);
     EXPECT_DOUBLE_EQ(figures.at("accepted_of_right"), 2.0 / 5.0);  // all but the first are within half the tolerance
     EXPECT_EQ(figures.at("first_accept"), 3.0);

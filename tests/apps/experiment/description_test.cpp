@@ -172,6 +172,15 @@ TEST(Description, RunsOfOneRecordingAreOneUnit) {
     }
 }
 
+TEST(Description, AFaultIsCheckedBeforeHoursAreSpent) {
+    const Description good = described(R"([{"fault": ["none", "frozen@3-"]}])");
+    EXPECT_EQ(good.tables[0].rows[0].settings.count("fault"), 0U);  // as a row that says nothing of it
+    EXPECT_EQ(recording_options(good.tables[0].rows[0].settings, 1, ".").faults.size(), 0U);
+    EXPECT_EQ(recording_options(good.tables[0].rows[1].settings, 1, ".").faults.at(0).first, 3);
+    for (const char* bad : {R"([{"fault": "frozne@all"}])", R"([{"fault": "frozen@9-", "frames": 9}])"})
+        EXPECT_THROW(described(bad), std::runtime_error) << bad;
+}
+
 TEST(Description, ShardsAreReadStrictly) {
     EXPECT_EQ(parse_shard("2/5").shard, 2);
     for (const char* text : {"0/3", "4/3", "1", "1/0", "a/3", "1/3/4", "-1/3", "1/", "/3", ""})

@@ -58,6 +58,25 @@ TEST(RunCells, TheMoveIsToldOnceAlsoWhereItsFrameIsDropped) {
     }
 }
 
+TEST(RunCells, FramesSayWhetherTheyHaveAFault) {
+    const CellResult run = run_with({{"fault", std::string("frozen@4-5")}, {"method", "paper"}, {"particles", 1.0}});
+    for (std::size_t i = 0; i < run.frames.size(); ++i) EXPECT_EQ(run.frames[i].faulty, i == 4 || i == 5);
+}
+
+TEST(RunCells, WrittenIntrinsicsAreBelievedAndTheTruthStays) {
+    const CellResult right = run_with({}), wrong = run_with({{"fault", std::string("focal:50@all")}});
+    ASSERT_EQ(right.frames.size(), wrong.frames.size());
+    double apart_m = 0.0;
+    for (std::size_t i = 0; i < right.frames.size(); ++i) {
+        EXPECT_EQ(right.frames[i].visibility->distance_m, wrong.frames[i].visibility->distance_m);
+        if (right.frames[i].errors && wrong.frames[i].errors)
+            apart_m = std::max(apart_m, (right.frames[i].errors->translation_in_camera_m -
+                                         wrong.frames[i].errors->translation_in_camera_m)
+                                            .norm());
+    }
+    EXPECT_GT(apart_m, 0.001);
+}
+
 TEST(RunCells, AStartAtTheTruthIsNearItInEveryFrame) {
     // Without solving, the estimate is where it was started.
     const CellResult run = run_with({{"start", "truth"},
