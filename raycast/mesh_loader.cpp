@@ -44,9 +44,13 @@ Mesh read_by_extension(const std::filesystem::path& path, const MeshLimits& limi
                                  ": models are read from .ply, .stl, .obj, .off, .gltf and .glb files, not \"" +
                                  extension + "\"; " + kWhatToDo);
     }
-    const std::string bytes = read_regular_file(path, limits.max_file_bytes);
+    const std::string content = read_regular_file(path, limits.max_file_bytes);
+    if (extension == ".stl") return read_stl(content, source, limits);
+    const std::string_view bytes = without_byte_order_mark(content);
+    if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
+        throw std::runtime_error(source + ": the text is in UTF-16; save it as UTF-8");
+    }
     if (extension == ".ply") return read_ply(bytes, source, limits, repair);
-    if (extension == ".stl") return read_stl(bytes, source, limits, repair);
     if (extension == ".obj") return read_obj(bytes, source, limits, repair);
     if (extension == ".off") return read_off(bytes, source, limits, repair);
     return read_gltf(bytes, source, path.parent_path(), limits, repair);

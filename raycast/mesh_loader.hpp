@@ -1,8 +1,8 @@
 // Mesh files: PLY (also a dense point cloud), STL, OBJ, OFF, glTF 2 and GLB.
 //
-// PLY and OBJ have readers of their own. STL (text and binary), OFF (text, with or without colours; faces of up to 9
-// corners) and glTF go through assimp, of which only the format's own importer is left, after a check of the whole
-// file. COLLADA (.dae) and 3MF are refused, since their importers crash on damaged files: export PLY, STL or OBJ.
+// glTF goes through assimp, of which only that importer is left, after a check of the whole document. All others have
+// readers of their own. Faces may have any number of corners and be concave. COLLADA (.dae) and 3MF are refused, since
+// their importers crash on damaged files: export PLY, STL or OBJ.
 //
 // A file is hostile until checked: sizes are compared with the bytes of the file before anything is allocated, every
 // index is checked, and nothing but the file itself (for glTF also regular files of its folder) is opened.

@@ -1,12 +1,12 @@
-// STL, OFF, glTF 2 and GLB through assimp. For each file all of its importers but the one wanted are unregistered, and
-// it is given the bytes that a guard has checked, never the file system.
+// glTF 2 and GLB through assimp. All of its importers but the one wanted are unregistered, and it is given the bytes
+// that a guard has checked, never the file system.
 //
-// The importers of Debian 12 (assimp 5.2.5) were fed damaged files. STL crashed on none of 6000, OFF on none of 400 but
-// on a line of more than 4096 bytes. glTF has memory faults that are not fixed in this version (overflows in accessors
+// The importer of Debian 12 (assimp 5.2.5) has memory faults that are not fixed in this version (overflows in accessors
 // and nodes, endless recursion); it gets a document that gltf_guard has rewritten. The guard does not look into the
 // buffers: positions are checked by clean; faces whose indices are out of range the importer drops itself, without a
-// count. PLY hangs and OBJ writes beyond its heap blocks there: both have readers of their own. COLLADA (crashes and
-// gigabytes on 8 of 400, recursion without end) and 3MF (aborts on 53 of 400) are not read.
+// count. All other formats have readers of their own: assimp's hang (PLY), write beyond their heap blocks (OBJ), or
+// need a check of the whole file that is a reader already (STL, OFF). COLLADA (crashes and gigabytes on 8 of 400,
+// recursion without end) and 3MF (aborts on 53 of 400) are not read.
 #include <assimp/BaseImporter.h>
 #include <assimp/importerdesc.h>
 #include <assimp/scene.h>
@@ -21,8 +21,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "raycast/mesh_files/face_writer.hpp"
 #include "raycast/mesh_files/gltf_guard.hpp"
-#include "raycast/mesh_files/import_guards.hpp"
 #include "raycast/mesh_files/readers.hpp"
 
 namespace nearpose {
@@ -61,10 +61,10 @@ class MemoryStream : public Assimp::IOStream {
     std::size_t position_ = 0;
 };
 
-// Opens `document` under `name`, and under any other name regular files of `folder` where there is one, for reading.
+// Opens `document` under `name`, and under any other name regular files of `folder`, for reading.
 class GuardedFiles : public Assimp::IOSystem {
   public:
-    GuardedFiles(std::string name, std::string_view document, const std::filesystem::path* folder,
+    GuardedFiles(std::string name, std::string_view document, const std::filesystem::path& folder,
                  std::uint64_t max_bytes)
         : name_(std::move(name)), document_(document), folder_(folder), max_bytes_(max_bytes) {}
 
@@ -74,16 +74,16 @@ class GuardedFiles : public Assimp::IOSystem {
         if (mode == nullptr || mode[0] != 'r') return nullptr;
         if (file == name_) return std::make_unique<MemoryStream>(document_).release();
         if (!is_buffer(file)) return nullptr;
-        return std::make_unique<MemoryStream>(read_regular_file(*folder_ / file, max_bytes_)).release();
+        return std::make_unique<MemoryStream>(read_regular_file(folder_ / file, max_bytes_)).release();
     }
     void Close(Assimp::IOStream* stream) override { const std::unique_ptr<Assimp::IOStream> owner(stream); }
 
   private:
-    bool is_buffer(const char* file) const { return folder_ != nullptr && is_own_file(*folder_, file); }
+    bool is_buffer(const char* file) const { return is_own_file(folder_, file); }
 
     std::string name_;
     std::string_view document_;
-    const std::filesystem::path* folder_;
+    const std::filesystem::path& folder_;
     std::uint64_t max_bytes_;
 };
 
@@ -100,7 +100,7 @@ void keep_alone(std::string_view wanted, Assimp::Importer& importer) {
 }
 
 void append_mesh(const aiMesh& part, const aiMatrix4x4& object_from_mesh, const std::string& source,
-                 const MeshLimits& limits, Mesh& mesh, MeshRepair& repair) {
+                 const MeshLimits& limits, Mesh& mesh, FaceWriter& faces) {
     const std::size_t first = mesh.vertices_in_object.size();
     if (first + part.mNumVertices > 3 * static_cast<std::size_t>(limits.max_triangles)) {
         throw std::runtime_error(source + ": more vertices than the limit of " +
@@ -110,27 +110,29 @@ void append_mesh(const aiMesh& part, const aiMatrix4x4& object_from_mesh, const 
         const aiVector3D vertex = object_from_mesh * part.mVertices[v];
         mesh.vertices_in_object.emplace_back(vertex.x, vertex.y, vertex.z);
     }
+    std::vector<int> corners;
     for (unsigned f = 0; f < part.mNumFaces; ++f) {
         const aiFace& face = part.mFaces[f];
-        std::vector<int> corners;
+        corners.clear();
         for (unsigned k = 0; k < face.mNumIndices; ++k) {
             const bool exists = face.mIndices[k] < part.mNumVertices;
             corners.push_back(exists ? static_cast<int>(first + face.mIndices[k]) : -1);
         }
-        add_polygon(corners.data(), corners.size(), source, limits.max_triangles, mesh, repair);
+        faces.add(corners);
     }
 }
 
 // The meshes of all nodes in object axes; the guard has limited how many nodes there are.
 Mesh flatten(const aiScene& scene, const std::string& source, const MeshLimits& limits, MeshRepair& repair) {
     Mesh mesh;
+    FaceWriter faces(source, limits, mesh, repair);
     std::vector<std::pair<const aiNode*, aiMatrix4x4>> open{{scene.mRootNode, aiMatrix4x4()}};
     while (!open.empty()) {
         const auto [node, object_from_parent] = open.back();
         open.pop_back();
         const aiMatrix4x4 object_from_node = object_from_parent * node->mTransformation;
         for (unsigned m = 0; m < node->mNumMeshes; ++m) {
-            append_mesh(*scene.mMeshes[node->mMeshes[m]], object_from_node, source, limits, mesh, repair);
+            append_mesh(*scene.mMeshes[node->mMeshes[m]], object_from_node, source, limits, mesh, faces);
         }
         for (unsigned c = node->mNumChildren; c-- > 0;) open.emplace_back(node->mChildren[c], object_from_node);
     }
@@ -138,58 +140,25 @@ Mesh flatten(const aiScene& scene, const std::string& source, const MeshLimits& 
     return mesh;
 }
 
-struct Format {
-    std::string_view importer;  // assimp's name of it
-    std::string extension;      // by which the importer knows its files
-    std::string name;           // in errors
-};
-
-// `folder` is where other files may be opened, null for none.
-Mesh import(const Format& format, std::string_view document, const std::filesystem::path* folder,
-            const std::string& source, const MeshLimits& limits, MeshRepair& repair) {
-    // A colon keeps the name apart from those that a buffer may have.
-    const std::string name = "document:." + format.extension;
-    Assimp::Importer importer;
-    keep_alone(format.importer, importer);
-    importer.SetIOHandler(new GuardedFiles(name, document, folder, limits.max_file_bytes));  // takes it over
-    const aiScene* scene = importer.ReadFile(name, 0);
-    if (scene == nullptr || scene->mRootNode == nullptr) {
-        // The importer may quote the rest of the file.
-        const std::string cause = std::string(importer.GetErrorString()).substr(0, 200);
-        throw std::runtime_error(source + ": " + format.name + ": " + cause.substr(0, cause.find_first_of("\r\n")));
-    }
-    return flatten(*scene, source, limits, repair);
-}
-
-// An importer that leaves out what it does not like must not pass for one that read the whole file.
-void require_triangles(std::uint64_t declared, const Mesh& mesh, const std::string& source) {
-    if (mesh.triangles.size() == declared) return;
-    throw std::runtime_error(source + ": only " + std::to_string(mesh.triangles.size()) + " of " +
-                             std::to_string(declared) + " triangles could be read; export it again, as PLY");
-}
-
 }  // namespace
-
-Mesh read_stl(std::string_view bytes, const std::string& source, const MeshLimits& limits, MeshRepair& repair) {
-    const std::uint64_t declared = checked_stl_triangles(bytes, source, limits);
-    Mesh mesh = import({"Stereolithography (STL) Importer", "stl", "STL"}, bytes, nullptr, source, limits, repair);
-    require_triangles(declared, mesh, source);
-    return mesh;
-}
-
-Mesh read_off(std::string_view bytes, const std::string& source, const MeshLimits& limits, MeshRepair& repair) {
-    const std::uint64_t declared = checked_off_triangles(bytes, source, limits);
-    Mesh mesh = import({"OFF Importer", "off", "OFF"}, bytes, nullptr, source, limits, repair);
-    require_triangles(declared, mesh, source);
-    return mesh;
-}
 
 Mesh read_gltf(std::string_view bytes, const std::string& source, const std::filesystem::path& folder,
                const MeshLimits& limits, MeshRepair& repair) {
     const bool is_glb = is_glb_file(bytes);
     const std::string document =
         is_glb ? checked_glb(bytes, source, folder, limits) : checked_gltf(bytes, 0, source, folder, limits);
-    return import({"glTF2 Importer", is_glb ? "glb" : "gltf", "glTF"}, document, &folder, source, limits, repair);
+    // A colon keeps the name apart from those that a buffer may have.
+    const std::string name = is_glb ? "document:.glb" : "document:.gltf";
+    Assimp::Importer importer;
+    keep_alone("glTF2 Importer", importer);
+    importer.SetIOHandler(new GuardedFiles(name, document, folder, limits.max_file_bytes));  // takes it over
+    const aiScene* scene = importer.ReadFile(name, 0);
+    if (scene == nullptr || scene->mRootNode == nullptr) {
+        // The importer may quote the rest of the file.
+        const std::string cause = std::string(importer.GetErrorString()).substr(0, 200);
+        throw std::runtime_error(source + ": glTF: " + cause.substr(0, cause.find_first_of("\r\n")));
+    }
+    return flatten(*scene, source, limits, repair);
 }
 
 }  // namespace nearpose

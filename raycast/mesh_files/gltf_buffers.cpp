@@ -46,8 +46,7 @@ std::string GltfBuffers::buffer(const JsonValue& item) {
         const bool is_chunk = buffer_bytes_.empty() && static_cast<std::uint64_t>(bytes) <= binary_chunk_bytes_;
         if (!is_chunk) fields_.fail("a buffer has neither a uri nor enough bytes in the file");
     } else {
-        check_uri(*uri, bytes);
-        out += ",\"uri\":\"" + std::string(uri->text) + "\"";
+        out += ",\"uri\":\"" + checked_uri(*uri, bytes) + "\"";
     }
     buffer_bytes_.push_back(bytes);
     return out + "}";
@@ -70,18 +69,23 @@ void GltfBuffers::check_data_uri(std::string_view uri, std::int64_t bytes) const
     }
 }
 
-void GltfBuffers::check_uri(const JsonValue& uri, std::int64_t bytes) const {
+std::string GltfBuffers::checked_uri(const JsonValue& uri, std::int64_t bytes) const {
     if (uri.kind != JsonValue::Kind::kString) fields_.fail("the uri of a buffer is not a string");
-    if (uri.text.starts_with("data:")) return check_data_uri(uri.text, bytes);
-    const std::string name(uri.text.substr(0, 200));
-    if (!is_own_file(folder_, uri.text)) {
-        fields_.fail("the buffer \"" + name + "\" is not a regular file beside it with a plain name");
+    if (uri.text.starts_with("data:")) {
+        check_data_uri(uri.text, bytes);
+        return std::string(uri.text);
+    }
+    const std::string name = file_name_of(uri.text);
+    if (!is_own_file(folder_, name)) {
+        fields_.fail("the buffer \"" + std::string(uri.text.substr(0, 200)) +
+                     "\" is not a regular file beside it with a plain name");
     }
     std::error_code error;
     const std::uintmax_t size = std::filesystem::file_size(folder_ / name, error);
     if (error || size < static_cast<std::uint64_t>(bytes) || size > fields_.limits().max_file_bytes) {
         fields_.fail("the file \"" + name + "\" is shorter than its buffer, or above the limit");
     }
+    return name;
 }
 
 std::string GltfBuffers::view(const JsonValue& item) {

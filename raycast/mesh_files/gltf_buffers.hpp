@@ -46,7 +46,8 @@ class GltfBuffers {
         std::int64_t stride = 0;  // 0: packed
     };
 
-    void check_uri(const JsonValue& uri, std::int64_t bytes) const;
+    // As the importer gets it: the name of a file that was checked, or data.
+    std::string checked_uri(const JsonValue& uri, std::int64_t bytes) const;
     void check_data_uri(std::string_view uri, std::int64_t bytes) const;
 
     const GltfFields& fields_;

@@ -1,5 +1,6 @@
 #include "raycast/mesh_files/gltf_guard.hpp"
 
+#include <charconv>
 #include <stdexcept>
 
 #include "raycast/mesh_files/gltf_buffers.hpp"
@@ -109,13 +110,30 @@ class GltfChecker {
 
 }  // namespace
 
-bool is_own_file(const std::filesystem::path& folder, std::string_view uri) {
-    // Neither separators and drives, nor escapes of JSON or of uris, which could spell them.
-    if (uri.empty() || uri.size() > 200 || uri == ".." || uri == "." || uri.find_first_of("/\\:%") != uri.npos)
+std::string file_name_of(std::string_view uri) {
+    std::string name;
+    for (std::size_t i = 0; i < uri.size(); ++i) {
+        unsigned byte = static_cast<unsigned char>(uri[i]);
+        if (uri[i] == '%') {
+            const std::string_view digits = uri.substr(i + 1, 2);
+            const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), byte, 16);
+            if (error != std::errc() || end != digits.data() + 2) return "";
+            i += 2;
+        }
+        // Neither control characters nor what ends a string of JSON or begins an escape, separators and drives.
+        constexpr std::string_view kForbidden = "\"\\/:";
+        if (byte < 0x20 || kForbidden.find(static_cast<char>(byte)) != kForbidden.npos) return "";
+        name += static_cast<char>(byte);
+    }
+    return name;
+}
+
+bool is_own_file(const std::filesystem::path& folder, std::string_view name) {
+    if (name.empty() || name.size() > 200 || name == ".." || name == "." || name.find_first_of("/\\:") != name.npos)
         return false;
-    if (uri.find('\0') != uri.npos) return false;
+    if (name.find('\0') != name.npos) return false;
     std::error_code error;
-    return std::filesystem::is_regular_file(std::filesystem::symlink_status(folder / uri, error));
+    return std::filesystem::is_regular_file(std::filesystem::symlink_status(folder / name, error));
 }
 
 std::string checked_gltf(std::string_view json, std::uint64_t binary_chunk_bytes, const std::string& source,

@@ -23,7 +23,9 @@ std::string checked_glb(std::string_view bytes, const std::string& source, const
                         const MeshLimits& limits);
 bool is_glb_file(std::string_view bytes);
 
-// True if a buffer's `uri` can be opened as a file: a plain name in `folder` of a regular file, no link.
-bool is_own_file(const std::filesystem::path& folder, std::string_view uri);
+// The name of the file that a `uri` means: "%20" and its like stand for a byte. Empty where it is no plain name.
+std::string file_name_of(std::string_view uri);
+// True if `name` can be opened: a plain name in `folder` of a regular file, no link.
+bool is_own_file(const std::filesystem::path& folder, std::string_view name);
 
 }  // namespace nearpose

@@ -11,7 +11,7 @@
 namespace nearpose {
 namespace {
 
-constexpr std::size_t kMaxElements = 64;
+constexpr std::size_t kMaxHeaderElements = 64;
 constexpr std::size_t kMaxProperties = 256;  // of one element
 constexpr std::size_t kMaxHeaderBytes = 1U << 20U;
 
@@ -46,7 +46,7 @@ class HeaderParser {
         if (!scanner_.next_line() || scanner_.word() != "ply") fail("the file does not begin with the line \"ply\"");
         while (scanner_.next_line() && scanner_.position() < kMaxHeaderBytes) {
             const std::string_view keyword = scanner_.word();
-            if (keyword == "comment" || keyword == "obj_info") continue;
+            if (keyword.empty() || keyword == "comment" || keyword == "obj_info") continue;
             if (keyword == "end_header") return finish();
             if (keyword == "format") {
                 parse_format();
@@ -93,7 +93,7 @@ class HeaderParser {
             if (other.name == element.name) fail("element \"" + element.name + "\" for the second time");
         }
         header_.elements.push_back(std::move(element));
-        if (header_.elements.size() > kMaxElements) fail("too many elements");
+        if (header_.elements.size() > kMaxHeaderElements) fail("too many elements");
     }
 
     void parse_property() {

@@ -1,4 +1,4 @@
-// Strict: what a file declares must be there, no more and no less, row by row.
+// Strict: what a file declares must be there, no more and no less, row by row. Blanks and colours of faces may be more.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "raycast/mesh_files/face_writer.hpp"
 #include "raycast/mesh_files/ply_header.hpp"
 #include "raycast/mesh_files/readers.hpp"
 #include "raycast/mesh_files/text_scanner.hpp"
@@ -48,6 +49,18 @@ class PlyBody {
     void end_row() {
         if (format_ == PlyFormat::kText && !next_word().empty()) fail("more values than the header says");
     }
+    // The same, but in text a colour may follow that the header does not mention: three or four numbers of a byte each.
+    void end_face() {
+        if (format_ != PlyFormat::kText) return;
+        int num_values = 0;
+        bool is_colour = true;
+        for (std::string_view word = next_word(); !word.empty(); word = next_word(), ++num_values) {
+            const std::optional<std::int64_t> value = parse_integer(word);
+            is_colour = is_colour && value && *value >= 0 && *value <= 255;
+        }
+        is_colour = is_colour && (num_values == 3 || num_values == 4);
+        if (num_values > 0 && !is_colour) fail("more values than the header says");
+    }
 
     double scalar(PlyType type) {
         if (format_ == PlyFormat::kText) {
@@ -80,7 +93,7 @@ class PlyBody {
         while (format_ == PlyFormat::kText && text_.next_line()) {
             if (!text_.word().empty()) fail("more rows than the header says");
         }
-        if (format_ != PlyFormat::kText && bytes_left() != 0) {
+        if (format_ != PlyFormat::kText && !is_padding(bytes_.substr(position_))) {
             fail(std::to_string(bytes_left()) + " bytes more than the header says");
         }
     }
@@ -180,8 +193,7 @@ void read_vertices(const PlyElement& element, PlyBody& body, const MeshLimits& l
     }
 }
 
-void read_faces(const PlyElement& element, std::uint64_t num_vertices, PlyBody& body, const std::string& source,
-                const MeshLimits& limits, Mesh& mesh, MeshRepair& repair) {
+void read_faces(const PlyElement& element, std::uint64_t num_vertices, PlyBody& body, FaceWriter& faces) {
     if (element.count == 0) return;
     const int place = std::max(element.find("vertex_indices"), element.find("vertex_index"));
     if (place < 0 || !element.properties[static_cast<std::size_t>(place)].is_list) {
@@ -202,11 +214,10 @@ void read_faces(const PlyElement& element, std::uint64_t num_vertices, PlyBody& 
                 const bool exists = index >= 0.0 && index < static_cast<double>(num_vertices);
                 corner = exists && index == std::floor(index) ? static_cast<int>(index) : -1;
             }
-            add_polygon(corners.data(), corners.size(), source, limits.max_triangles, mesh, repair);
+            faces.add(corners);
         }
-        body.end_row();
+        body.end_face();
     }
-    if (mesh.triangles.empty()) body.fail("none of the faces has three corners");
 }
 
 }  // namespace
@@ -223,12 +234,14 @@ Mesh read_ply(std::string_view bytes, const std::string& source, const MeshLimit
     if (num_vertices == 0) body.fail("the file has no vertices");
 
     Mesh mesh;
+    FaceWriter faces(source, limits, mesh, repair);
     for (const PlyElement& element : header.elements) {
         require_room(element, body);
         if (element.name == "vertex") {
             read_vertices(element, body, limits, mesh);
         } else if (element.name == "face") {
-            read_faces(element, num_vertices, body, source, limits, mesh, repair);
+            read_faces(element, num_vertices, body, faces);
+            if (element.count > 0 && mesh.triangles.empty()) body.fail("none of the faces has three corners");
         } else {
             for (std::uint64_t row = 0; row < element.count; ++row) {
                 body.begin_row();
@@ -238,6 +251,7 @@ Mesh read_ply(std::string_view bytes, const std::string& source, const MeshLimit
         }
     }
     body.require_end();
+    faces.finish();
     if (mesh.is_cloud() && num_vertices > static_cast<std::uint64_t>(limits.max_triangles)) {
         body.fail(std::to_string(num_vertices) + " points are more than the limit of " +
                   std::to_string(limits.max_triangles));

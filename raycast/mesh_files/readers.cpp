@@ -5,6 +5,15 @@
 
 namespace nearpose {
 
+std::string_view without_byte_order_mark(std::string_view text) {
+    constexpr std::string_view kMark = "\xEF\xBB\xBF";
+    return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
+}
+
+bool is_padding(std::string_view bytes) {
+    return bytes.find_first_not_of(std::string_view(" \t\r\n\0", 5)) == bytes.npos;
+}
+
 std::string read_regular_file(const std::filesystem::path& path, std::uint64_t max_bytes) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(path, error);
@@ -22,18 +31,6 @@ std::string read_regular_file(const std::filesystem::path& path, std::uint64_t m
         throw std::runtime_error(path.string() + ": cannot be read");
     }
     return bytes;
-}
-
-void add_polygon(const int* corners, std::size_t num_corners, const std::string& source, std::int64_t max_triangles,
-                 Mesh& mesh, MeshRepair& repair) {
-    if (num_corners < 3) {
-        ++repair.triangles_degenerate;
-        return;
-    }
-    if (mesh.triangles.size() + num_corners - 2 > static_cast<std::size_t>(max_triangles)) {
-        throw std::runtime_error(source + ": more triangles than the limit of " + std::to_string(max_triangles));
-    }
-    for (std::size_t k = 2; k < num_corners; ++k) mesh.triangles.push_back({corners[0], corners[k - 1], corners[k]});
 }
 
 }  // namespace nearpose

@@ -11,20 +11,20 @@
 
 namespace nearpose {
 
+// `text` without the three bytes that some programs put before UTF-8.
+std::string_view without_byte_order_mark(std::string_view text);
+// True if there are only blanks, ends of lines and zeros.
+bool is_padding(std::string_view bytes);
+
 // The bytes of a regular file of at most `max_bytes`; pipes and devices, which might never end, are refused.
 std::string read_regular_file(const std::filesystem::path& path, std::uint64_t max_bytes);
 
 Mesh read_ply(std::string_view bytes, const std::string& source, const MeshLimits& limits, MeshRepair& repair);
-Mesh read_stl(std::string_view bytes, const std::string& source, const MeshLimits& limits, MeshRepair& repair);
+Mesh read_stl(std::string_view bytes, const std::string& source, const MeshLimits& limits);
 Mesh read_off(std::string_view bytes, const std::string& source, const MeshLimits& limits, MeshRepair& repair);
 Mesh read_obj(std::string_view bytes, const std::string& source, const MeshLimits& limits, MeshRepair& repair);
 // `folder` is where the buffers of a .gltf are looked for.
 Mesh read_gltf(std::string_view bytes, const std::string& source, const std::filesystem::path& folder,
                const MeshLimits& limits, MeshRepair& repair);
-
-// Adds a polygon as a fan of triangles; counts it as degenerate where it has fewer than three corners. Throws
-// std::runtime_error where the mesh would pass `max_triangles`.
-void add_polygon(const int* corners, std::size_t num_corners, const std::string& source, std::int64_t max_triangles,
-                 Mesh& mesh, MeshRepair& repair);
 
 }  // namespace nearpose

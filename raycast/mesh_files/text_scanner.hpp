@@ -25,16 +25,18 @@ class TextScanner {
     }
     // The next word of the line; empty at its end.
     std::string_view word() {
-        constexpr std::string_view kBlank = " \t\r\v\f";
         line_.remove_prefix(std::min(line_.find_first_not_of(kBlank), line_.size()));
         const std::string_view found = line_.substr(0, line_.find_first_of(kBlank));
         line_.remove_prefix(found.size());
         return found;
     }
+    bool is_line_done() const { return line_.find_first_not_of(kBlank) == line_.npos; }
     std::int64_t line_number() const { return line_number_; }
     std::size_t position() const { return next_; }  // of the byte after the line
 
   private:
+    static constexpr std::string_view kBlank = " \t\r\v\f";
+
     std::string_view text_;
     std::string_view line_;
     std::size_t next_ = 0;

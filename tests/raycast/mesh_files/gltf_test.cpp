@@ -108,6 +108,36 @@ TEST_F(Gltf, PlacesNodesByTheirTransforms) {
     EXPECT_LT((extent.box_max_in_object - Eigen::Vector3d(2.5, 4.0, 0.5)).norm(), 1e-5);
 }
 
+// A mirrored part: the triangles lie where the matrix puts them, whatever their winding becomes.
+TEST_F(Gltf, MirrorsWhereANodeDoes) {
+    Parts parts;
+    parts.nodes = R"([{"mesh":0,"translation":[5,0,0],"scale":[-2,1,1]}])";
+    const ModelExtent by_scale = extent_of(load(parts).mesh);
+    parts.nodes = R"([{"mesh":0,"matrix":[-2,0,0,0, 0,1,0,0, 0,0,1,0, 5,0,0,1]}])";
+    const Mesh by_matrix = load(parts).mesh;
+    EXPECT_EQ(by_matrix.triangles.size(), 12U);
+    EXPECT_NEAR(surface_area_m2(by_matrix), 2.0 * (2.0 + 2.0 + 1.0), 1e-5);
+    for (const ModelExtent& extent : {by_scale, extent_of(by_matrix)}) {
+        EXPECT_LT((extent.box_min_in_object - Eigen::Vector3d(4.0, -0.5, -0.5)).norm(), 1e-5);
+        EXPECT_LT((extent.box_max_in_object - Eigen::Vector3d(6.0, 0.5, 0.5)).norm(), 1e-5);
+    }
+    // The third corner of the first triangle, at +x, comes to lie at the low end.
+    EXPECT_NEAR(by_matrix.vertices_in_object[static_cast<std::size_t>(by_matrix.triangles[0][2])].x(), 4.0F, 1e-5F);
+}
+
+TEST_F(Gltf, NamesOfBuffersMayHaveEscapes) {
+    std::filesystem::rename(folder_ / "cube.bin", folder_ / "a cube (1).bin");
+    for (const std::string uri : {"a%20cube%20(1).bin", "a cube (1).bin", "%61%20cube%20%281%29.bin"}) {
+        Parts parts;
+        parts.uri = ",\"uri\":\"" + uri + "\"";
+        EXPECT_EQ(load(parts).mesh.triangles.size(), 12U) << uri;
+    }
+}
+
+TEST_F(Gltf, AByteOrderMarkIsNoPartOfTheText) {
+    EXPECT_EQ(load_mesh(write("cube.gltf", "\xEF\xBB\xBF" + gltf({})), kUnit).mesh.triangles.size(), 12U);
+}
+
 TEST_F(Gltf, NestedBracketsAreRefusedBeforeTheyOverflowTheStack) {
     for (const char bracket : {'[', '{'}) {
         Parts parts;
@@ -150,8 +180,26 @@ TEST_F(Gltf, OpensNothingOutsideItsFolder) {
     std::filesystem::create_directory(folder_ / "inner");
     std::filesystem::create_symlink(folder_ / "cube.bin", folder_ / "inner" / "link.bin");
     ASSERT_EQ(::mkfifo((folder_ / "inner" / "pipe.bin").c_str(), 0600), 0);
-    for (const std::string uri : {"../cube.bin", "link.bin", "pipe.bin", "/dev/zero", "..", ".", "", "%2e%2e/cube.bin",
-                                  "..\\\\cube.bin", "..\\u002fcube.bin", "file:///dev/zero", "none.bin"}) {
+    for (const std::string uri : {"../cube.bin",
+                                  "link.bin",
+                                  "pipe.bin",
+                                  "/dev/zero",
+                                  "..",
+                                  ".",
+                                  "",
+                                  "%2e%2e/cube.bin",
+                                  "..\\\\cube.bin",
+                                  "..\\u002fcube.bin",
+                                  "file:///dev/zero",
+                                  "none.bin",
+                                  "%2e%2e%2fcube.bin",
+                                  "%2Fdev%2Fzero",
+                                  "%00",
+                                  "%2",
+                                  "%zz",
+                                  "%22",
+                                  "%5ccube.bin",
+                                  "%2e%2e"}) {
         Parts parts;
         parts.uri = ",\"uri\":\"" + uri + "\"";
         const auto path = write("inner/cube.gltf", gltf(parts));

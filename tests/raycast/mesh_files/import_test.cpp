@@ -171,15 +171,12 @@ TEST_F(Import, OffMayHaveCommentsColoursAndPolygons) {
     EXPECT_NEAR(extent_of(squares).diameter_m(), 1e-3 * extent_of(part).diameter_m(), 1e-7);
 }
 
-TEST_F(Import, OffRefusesWhatTheImporterWouldBendOrFallOver) {
+TEST_F(Import, OffRefusesWhatIsBroken) {
     const std::string whole = off(solid());
     const auto with = [&](const std::string& old_text, const std::string& new_text) {
         std::string changed = whole;
         return changed.replace(changed.find(old_text), old_text.size(), new_text);
     };
-    // A longer line than this would overflow the importer's buffer.
-    expect_off_refused(with("3 0 2 1", "3 0 2 1 " + std::string(100000, '9')), "longer than 1000");
-    expect_off_refused(with("8 12 0", "8 12 0\n#" + std::string(100000, ' ')), "longer than 1000");
     expect_off_refused(with("8 12 0", "1000000000 12 0"), "do not fit into the file");
     expect_off_refused(with("8 12 0", "8 4294967295 0"), "do not fit into the file");
     expect_off_refused(with("8 12 0", "-8 12 0"), "do not fit into the file");
@@ -189,10 +186,10 @@ TEST_F(Import, OffRefusesWhatTheImporterWouldBendOrFallOver) {
     expect_off_refused(with("3 0 2 1", "3 0 2 8"), "does not exist");
     expect_off_refused(with("3 0 2 1", "3 0 2 -1"), "does not exist");
     expect_off_refused(with("3 0 2 1", "3 0 2"), "does not exist");
-    expect_off_refused(with("3 0 2 1", "0"), "not 1 to 9 corners");
-    expect_off_refused(with("3 0 2 1", "10 0 1 2 3 4 5 6 7 0 1"), "not 1 to 9 corners");
+    expect_off_refused(with("3 0 2 1", "0"), "a face has no corners");
+    expect_off_refused(with("3 0 2 1", "1000000000 0 1 2"), "does not exist");
     expect_off_refused(with("30.5", "30,5"), "three numbers");
-    expect_off_refused(with("OFF", "NOFF"), "not OFF or COFF");
+    expect_off_refused(with("OFF", "4OFF"), "not OFF, COFF, NOFF");
     expect_off_refused("OFF BINARY\n" + std::string(100, '\0'), "not a text file");
     MeshLimits limits;
     limits.max_triangles = 11;

@@ -108,7 +108,6 @@ TEST_F(MeshLoader, ObjCountsCornersThatDoNotExist) {
 
 TEST_F(MeshLoader, ObjRefusesWhatItCannotRead) {
     expect_refused("a.obj", obj_cube() + "f 1 2 x\n", "line 17");
-    expect_refused("a.obj", obj_cube() + "f 1 2 3 \\\n 4\n", "not the corner");
     expect_refused("a.obj", obj_cube() + "f 99999999999999999999 1 2\n", "not the corner");
     expect_refused("a.obj", "v 1 2\n", "three numbers");
     expect_refused("a.obj", "v 1,5 2 3\n", "three numbers");
@@ -121,7 +120,7 @@ TEST_F(MeshLoader, StlRefusesCutAndWrongFiles) {
         EXPECT_THROW(load_mesh(write("a.stl", binary.substr(0, size)), kUnit), std::runtime_error) << size;
     }
     expect_refused("a.stl", binary_stl(12, "title").substr(0, 500), "not 500: it is cut short");
-    expect_refused("a.stl", binary_stl(12, "title") + "x", "not 685: it is too long");
+    expect_refused("a.stl", binary_stl(12, "title") + std::string(50, 'x'), "not 734: it is too long");
     // 85899346 triangles of 50 bytes are 4 more than 2^32: in 32 bits a file of 88 bytes would do.
     expect_refused("a.stl", binary_stl(85899346U, "title").substr(0, 88), "it would have 4294967384 bytes, not 88");
     for (const std::uint32_t count : {0U, 11U, 13U, 1000000000U, 4294967295U, 85899346U}) {
@@ -138,8 +137,6 @@ TEST_F(MeshLoader, StlRefusesCutAndWrongFiles) {
     expect_refused("a.stl", "solid\nfacet normal 0 x 1\n", "a normal needs three numbers");
     expect_refused("a.stl", "solid\nfacet\n", "without a normal");
     expect_refused("a.stl", "solid\nendfacet\n", "without a beginning");
-    expect_refused("a.stl", "solid\nvertex 1\f2 3\n", "form feeds");
-    expect_refused("a.stl", "solid\nvertex 1\r2 3\n", "carriage returns");
     expect_refused("a.stl", "solid\nendsolid\n", "no triangles");
     expect_refused("a.stl", "solid\nsolid\nendsolid\n", "without an end");
     MeshLimits limits;
@@ -175,8 +172,8 @@ TEST_F(MeshLoader, MutantsOfStlAndObjLoadOrThrow) {
             }
             try {
                 MeshRepair repair;
-                const Mesh mesh = clean(
-                    name == "a.stl" ? read_stl(bytes, name, {}, repair) : read_obj(bytes, name, {}, repair), name);
+                const Mesh mesh =
+                    clean(name == "a.stl" ? read_stl(bytes, name, {}) : read_obj(bytes, name, {}, repair), name);
                 ++loaded;
                 for (const auto& triangle : mesh.triangles) {
                     for (int corner : triangle) {
