@@ -1,5 +1,6 @@
 #include "apps/data_set/bop_models.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -8,6 +9,8 @@
 #include "apps/base/file_io.hpp"
 #include "apps/base/number_text.hpp"
 #include "apps/data_set/json_file.hpp"
+#include "apps/data_set/model_diameter.hpp"
+#include "raycast/mesh_loader.hpp"
 
 namespace nearpose::data_set {
 namespace {
@@ -24,7 +27,7 @@ Pose read_symmetry(const JsonValue& value) {
     Eigen::Matrix3d rotation;
     rotation << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];
     const double off = (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-    const bool last_row = m[12] == 0.0 && m[13] == 0.0 && m[14] == 0.0 && m[15] == 1.0;
+    const bool last_row = Eigen::Vector4d(m[12], m[13], m[14], m[15] - 1.0).cwiseAbs().maxCoeff() < 1e-6;
     if (!(off < 1e-3) || rotation.determinant() < 0.0 || !last_row) {
         throw value.error("is not a rigid transform (row-major 4x4)");
     }
@@ -37,14 +40,13 @@ AxisOfRevolution read_axis(const JsonValue& value) {
     symmetry.axis_in_object = vector_of(axis.numbers(3));
     if (!(symmetry.axis_in_object.norm() > 1e-9)) throw axis.error("has no direction");
     symmetry.axis_in_object.normalize();
-    symmetry.offset_in_object_m = vector_of(value.at("offset").numbers(3)) * 1e-3;
+    if (const auto offset = value.find("offset")) symmetry.offset_in_object_m = vector_of(offset->numbers(3)) * 1e-3;
     return symmetry;
 }
 
-ModelInfo read_entry(const JsonValue& entry) {
-    ModelInfo info;
-    info.diameter_m = entry.at("diameter").number() * 1e-3;
-    if (!(info.diameter_m > 0.0)) throw entry.at("diameter").error("must be positive");
+// Leaves the box at 0 where none of its keys is there.
+void read_box(const JsonValue& entry, ModelInfo& info) {
+    if (!entry.find("min_x") && !entry.find("size_x")) return;
     const auto three = [&](const std::string& prefix) {
         Eigen::Vector3d v;
         v.x() = entry.at(prefix + "_x").number();
@@ -56,6 +58,15 @@ ModelInfo read_entry(const JsonValue& entry) {
     const Eigen::Vector3d size_m = three("size") * 1e-3;
     if (!(size_m.minCoeff() >= 0.0)) throw entry.error("has a negative size");
     info.box_max_in_object_m = info.box_min_in_object_m + size_m;
+}
+
+ModelInfo read_entry(const JsonValue& entry) {
+    ModelInfo info;
+    if (const auto diameter = entry.find("diameter")) {
+        info.diameter_m = diameter->number() * 1e-3;
+        if (!(info.diameter_m > 0.0)) throw diameter->error("must be positive");
+    }
+    read_box(entry, info);
     if (const auto list = entry.find("symmetries_discrete")) {
         for (const JsonValue& symmetry : list->elements()) info.discrete_symmetries.push_back(read_symmetry(symmetry));
     }
@@ -99,6 +110,10 @@ std::string symmetries_text(const ModelInfo& info) {
     return text;
 }
 
+bool has_box(const ModelInfo& info) {
+    return info.box_min_in_object_m != info.box_max_in_object_m;
+}
+
 std::string entry_text(const ModelInfo& info) {
     const auto number = [](double value_m) {
         if (!std::isfinite(value_m)) throw std::invalid_argument("models_info.json: a number is not finite");
@@ -106,11 +121,15 @@ std::string entry_text(const ModelInfo& info) {
     };
     const Eigen::Vector3d& low = info.box_min_in_object_m;
     const Eigen::Vector3d size = info.box_max_in_object_m - low;
-    std::string text = "{\n    \"diameter\": " + number(info.diameter_m);
+    std::string text;
+    if (info.diameter_m > 0.0) text += ",\n    \"diameter\": " + number(info.diameter_m);
     const char* const axes[] = {"x", "y", "z"};
-    for (int i = 0; i < 3; ++i) text += std::string(",\n    \"min_") + axes[i] + "\": " + number(low[i]);
-    for (int i = 0; i < 3; ++i) text += std::string(",\n    \"size_") + axes[i] + "\": " + number(size[i]);
-    return text + symmetries_text(info) + "\n  }";
+    for (int i = 0; i < 3 && has_box(info); ++i)
+        text += std::string(",\n    \"min_") + axes[i] + "\": " + number(low[i]);
+    for (int i = 0; i < 3 && has_box(info); ++i)
+        text += std::string(",\n    \"size_") + axes[i] + "\": " + number(size[i]);
+    text += symmetries_text(info);
+    return "{" + text.substr(std::min<std::size_t>(1, text.size())) + "\n  }";
 }
 
 std::string listed(std::vector<int> ids) {
@@ -159,11 +178,25 @@ ModelInfo read_model_info(const fs::path& models_folder, int object_id) {
     const fs::path path = models_folder / "models_info.json";
     const std::map<int, ModelInfo> models = read_models_info(path);
     const auto found = models.find(object_id);
-    if (found != models.end()) return found->second;
-    std::vector<int> ids;
-    for (const auto& model : models) ids.push_back(model.first);
-    throw std::runtime_error(path.string() + ": no such object: " + std::to_string(object_id) +
-                             "; the file has: " + listed(ids));
+    if (found == models.end()) {
+        std::vector<int> ids;
+        for (const auto& model : models) ids.push_back(model.first);
+        throw std::runtime_error(path.string() + ": no such object: " + std::to_string(object_id) +
+                                 "; the file has: " + listed(ids));
+    }
+    ModelInfo info = found->second;
+    if (info.diameter_m > 0.0 && has_box(info)) return info;
+    std::vector<Eigen::Vector3f> points;
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& vertex : load_vertices(model_path(models_folder, object_id), LengthUnit::kMillimetre)) {
+        points.push_back(vertex.cast<float>());
+        box.extend(vertex);
+    }
+    if (!(info.diameter_m > 0.0)) info.diameter_m = diameter_of(points);
+    if (has_box(info)) return info;
+    info.box_min_in_object_m = box.min();
+    info.box_max_in_object_m = box.max();
+    return info;
 }
 
 }  // namespace nearpose::data_set

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "apps/base/notices.hpp"
 #include "apps/data_set/json_file.hpp"
 #include "core/base/camera.hpp"
 #include "core/base/depth_image.hpp"
@@ -17,9 +18,10 @@ struct Frame {
     int id = 0;  // the frame's number in scene_camera.json
     PinholeCamera camera;
     double depth_scale_mm = 1.0;            // millimetres per count
+    bool has_depth_scale = true;            // false: the file has none, and depth_scale_mm is what BOP takes then
     std::optional<Pose> camera_from_world;  // the measured camera motion
     double stamp_s = 0.0;                   // acquisition; the key "timestamp", else frame number / frames per second
-    std::filesystem::path depth;            // may be missing: load_depth tells
+    std::filesystem::path depth;  // of this number, whatever padding and ending; may be missing: load_depth tells
 };
 
 struct BopScene {
@@ -27,10 +29,12 @@ struct BopScene {
     int id = 0;
     std::vector<Frame> frames;  // in numeric order; none is an error
     bool has_timestamps = false;
+    Notices notices;       // what is odd about the files, and what was taken instead
+    Notices time_notices;  // of the stamps
 };
 
 struct SceneOptions {
-    std::optional<int> scene_id;      // else the number that the folder's name is
+    std::optional<int> scene_id;      // else the number that the folder's name is, else 0
     double frames_per_second = 30.0;  // for scenes without timestamps
     std::optional<int> first_frame;   // frame numbers, both included
     std::optional<int> last_frame;
@@ -38,8 +42,8 @@ struct SceneOptions {
 
 // Reads scene_camera.json and, for the image size, ../../camera.json or, where there is none, the headers of the depth
 // images (the size that most of them have). Throws std::runtime_error naming file, frame and key where intrinsics are
-// missing, a rotation is not a rotation, stamps do not grow, or no frame is left between first and last. Depth images
-// are not read: a broken one concerns its frame only.
+// missing or no frame is left between first and last. Motions and stamps that cannot be used, and a missing
+// depth_scale, are noted. Depth images are not read: a broken one concerns its frame only.
 BopScene open_scene(const std::filesystem::path& folder, const SceneOptions& options = {});
 
 // Throws std::runtime_error naming the file and the cause; the other frames are not concerned.
@@ -48,11 +52,6 @@ DepthImage load_depth(const Frame& frame);
 // The control of frame `now` after frame `before`: T_now * T_before^-1 with T = camera_from_world, which maps
 // coordinates in the camera of then to those in the camera of now. nullopt where either frame lacks its motion.
 std::optional<Pose> now_from_before(const Frame& now, const Frame& before);
-
-// A rigid transform from a row-major rotation (9 numbers) and a translation in millimetres (3 numbers), as BOP writes
-// cam_R_m2c, cam_t_m2c and cam_R_w2c, cam_t_w2c. Rotations off by up to 1e-3 (files with few digits) are replaced by
-// the nearest rotation, others refused.
-Pose read_bop_pose(const JsonValue& frame, const std::string& rotation_key, const std::string& translation_key);
 
 // Folder and file names of the layout.
 std::filesystem::path depth_path(const std::filesystem::path& scene_folder, int frame_id);

@@ -35,9 +35,18 @@ void read_focal_lengths(const JsonValue& root, PinholeCamera& camera) {
 
 void set_intrinsics(const JsonValue& cam_K, PinholeCamera& camera) {
     const std::vector<double> k = cam_K.numbers(9);
-    // A column-major matrix has its principal point in the last row; a skewed one is no pinhole camera of ours.
-    if (k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0) throw cam_K.error("must end in 0, 0, 1: is it column-major?");
-    if (k[1] != 0.0 || k[3] != 0.0) throw cam_K.error("has a skew, which is not supported");
+    // Files round, and some are inverted matrices of others.
+    const auto differs = [](double value, double wanted) { return std::abs(value - wanted) > 1e-9; };
+    // A column-major matrix has its principal point in the last row.
+    if (differs(k[6], 0.0) || differs(k[7], 0.0) || differs(k[8], 1.0)) {
+        throw cam_K.error("must end in 0, 0, 1: is it column-major?");
+    }
+    for (const double skew : {k[1], k[3]}) {
+        if (std::abs(skew) <= 1e-6 * std::abs(k[0])) continue;
+        throw cam_K.error(
+            "has a skew of " + format_number(skew) +
+            " pixels, which is not supported: rectify the depth images, and give the matrix that is left");
+    }
     if (!(k[0] > 0.0) || !(k[4] > 0.0)) throw cam_K.error("has a focal length that is not positive");
     camera.fx = k[0];
     camera.cx = k[2];
@@ -49,7 +58,8 @@ void refuse_distortion(const JsonValue& camera) {
     for (const char* key : {"distortion", "distortion_coefficients", "dist_coeffs", "coeffs", "cam_dist", "D", "d",
                             "k1", "k2", "k3", "p1", "p2"}) {
         const std::optional<JsonValue> found = camera.find(key);
-        if (!found || (!found->is_array() && !found->is_number())) continue;
+        if (!found || (!found->is_array() && !found->is_number() && !found->is_string())) continue;
+        if (found->is_string() && !parse_number(found->text())) continue;  // the name of a model of lenses
         for (const double coefficient : found->is_array() ? found->numbers() : std::vector{found->number()}) {
             if (coefficient == 0.0) continue;
             throw found->error("the lens has distortion (" + format_number(coefficient) +

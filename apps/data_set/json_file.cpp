@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
+#include <string_view>
 
 #include "apps/base/file_io.hpp"
 #include "apps/base/number_text.hpp"
@@ -25,6 +26,9 @@ class Watcher {
   public:
     bool operator()(int depth, nlohmann::json::parse_event_t event, nlohmann::json& value) {
         using Event = nlohmann::json::parse_event_t;
+        if (++values_ > kMaxJsonValues) {
+            throw std::runtime_error("the file holds more than " + std::to_string(kMaxJsonValues) + " values");
+        }
         if (event == Event::object_start || event == Event::array_start) {
             if (depth >= kMaxJsonDepth) {
                 throw std::runtime_error("nests deeper than " + std::to_string(kMaxJsonDepth) + " levels");
@@ -53,6 +57,7 @@ class Watcher {
         std::string key;
     };
     std::vector<Object> objects_;
+    int values_ = 0;
 };
 
 std::string with_place(const std::string& name, const std::string& place, const std::string& problem) {
@@ -66,14 +71,38 @@ std::string cause_of(const nlohmann::json::exception& error) {
     return text.front() == '[' && end != text.npos ? text.substr(end + 2) : text;
 }
 
+// The text with null for numbers that JSON has no words for, as Python and C++ write them: NaN, -Infinity, inf.
+std::string with_nulls(const std::string& text) {
+    static const std::set<std::string_view> kNoNumbers = {"NaN", "nan", "Infinity", "inf", "Inf"};
+    std::string result;
+    result.reserve(text.size());
+    bool in_string = false;
+    for (std::size_t i = 0; i < text.size();) {
+        const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+        std::size_t end = i + 1;
+        if (in_string && text[i] == '\\') {
+            end = std::min(end + 1, text.size());
+        } else if (text[i] == '"') {
+            in_string = !in_string;
+        } else if (!in_string && is_letter(text[i])) {
+            while (end < text.size() && is_letter(text[end])) ++end;
+        }
+        const std::string_view part = std::string_view(text).substr(i, end - i);
+        const bool no_number = !in_string && kNoNumbers.contains(part);
+        if (no_number && !result.empty() && result.back() == '-') result.pop_back();
+        result += no_number ? "null" : part;
+        i = end;
+    }
+    return result;
+}
+
 nlohmann::json parse(const std::string& text, const std::string& name) {
     if (text.size() > kMaxJsonBytes) throw std::runtime_error(name + ": longer than any JSON file that is read");
     Watcher watcher;
     try {
-        return nlohmann::json::parse(text, std::ref(watcher));
+        return nlohmann::json::parse(with_nulls(text), std::ref(watcher));
     } catch (const nlohmann::json::exception& error) {
-        throw std::runtime_error(
-            with_place(name, watcher.place(), "is not JSON (nor are NaN and Infinity): " + cause_of(error)));
+        throw std::runtime_error(with_place(name, watcher.place(), "is not JSON: " + cause_of(error)));
     } catch (const std::runtime_error& error) {
         throw std::runtime_error(with_place(name, watcher.place(), error.what()));
     }
@@ -153,8 +182,10 @@ std::vector<std::pair<int, JsonValue>> JsonValue::numbered_members() const {
 }
 
 double JsonValue::number() const {
-    if (!is_number()) throw error("must be a number");
-    const double value = value_->get<double>();
+    const auto text = is_string() ? parse_number(value_->get_ref<const std::string&>()) : std::nullopt;
+    if (value_->is_null()) throw error("is null or NaN, but must be a number");
+    if (!is_number() && !text) throw error("must be a number");
+    const double value = text ? *text : value_->get<double>();
     if (!std::isfinite(value)) throw error("must be a finite number");
     return value;
 }
@@ -184,14 +215,20 @@ std::string JsonValue::text() const {
 }
 
 std::vector<double> JsonValue::numbers(std::size_t count) const {
-    if (!is_array() || value_->size() != count)
-        throw error("must be an array of " + std::to_string(count) + " numbers");
+    std::size_t here = is_array() ? value_->size() : 0;
+    for (std::size_t i = 0; is_array() && i < value_->size(); ++i) {
+        if (value_->at(i).is_array()) here += value_->at(i).size() - 1;
+    }
+    if (!is_array() || here != count) throw error("must be an array of " + std::to_string(count) + " numbers");
     return numbers();
 }
 
 std::vector<double> JsonValue::numbers() const {
     std::vector<double> result;
-    for (const JsonValue& element : elements()) result.push_back(element.number());
+    for (const JsonValue& element : elements()) {
+        const std::vector<JsonValue> row = element.is_array() ? element.elements() : std::vector{element};
+        for (const JsonValue& value : row) result.push_back(value.number());
+    }
     return result;
 }
 

@@ -12,7 +12,9 @@
 
 namespace nearpose::data_set {
 
-inline constexpr std::uintmax_t kMaxJsonBytes = 64u << 20;
+// A frame of scene_camera.json takes half a kilobyte. Some bytes make values of sixteen times their size.
+inline constexpr std::uintmax_t kMaxJsonBytes = 32u << 20;
+inline constexpr int kMaxJsonValues = 4'000'000;
 inline constexpr int kMaxJsonDepth = 64;
 
 // A value inside a JsonFile, which must outlive it. Every getter throws std::runtime_error naming the file, the place
@@ -33,13 +35,13 @@ class JsonValue {
     // The members of an object whose keys are non-negative integers (BOP's frames and objects), in numeric order.
     std::vector<std::pair<int, JsonValue>> numbered_members() const;
 
-    double number() const;                   // finite
+    double number() const;                   // finite; also as a text: "0.1"
     int integer() const;                     // no fraction, fits an int
     std::uint64_t unsigned_integer() const;  // every one of 64 bits, as seeds are
     bool flag() const;                       // true or false
     std::string text() const;
-    std::vector<double> numbers(std::size_t count) const;  // an array of exactly `count` finite numbers
-    std::vector<double> numbers() const;                   // of any length
+    std::vector<double> numbers(std::size_t count) const;  // exactly `count` finite numbers, flat or in rows
+    std::vector<double> numbers() const;                   // of any length, flat or in rows
 
     // The error to throw for a value that the caller refuses: "<file>: <place> <problem>".
     std::runtime_error error(const std::string& problem) const;
@@ -53,7 +55,8 @@ class JsonValue {
 class JsonFile {
   public:
     // Throws std::runtime_error where the file cannot be read, is longer than kMaxJsonBytes, nests deeper than
-    // kMaxJsonDepth, is no JSON (NaN is not), or has a key twice in one object.
+    // kMaxJsonDepth, holds more than kMaxJsonValues, is no JSON, or has a key twice in one object. NaN and Infinity, as
+    // Python writes them, are read as null.
     explicit JsonFile(const std::filesystem::path& path);
     // Text that came from elsewhere; `name` stands for the file in messages.
     static JsonFile from_text(const std::string& text, const std::string& name);

@@ -63,11 +63,12 @@ std::uint64_t count_of(const std::string& text, std::uint64_t maximum, const std
 }
 
 void read_fields(const Entries& entries, const std::string& file, PcdHeader& header) {
-    const std::vector<std::string>& names = entry_of(entries, "FIELDS", file);
-    const std::vector<std::string>& sizes = entry_of(entries, "SIZE", file);
-    const std::vector<std::string>& types = entry_of(entries, "TYPE", file);
-    const std::vector<std::string> ones(names.size(), "1");
-    const std::vector<std::string>& counts = entries.contains("COUNT") ? entry_of(entries, "COUNT", file) : ones;
+    // Versions before 0.7 call them COLUMNS, and need not say that all are one float32.
+    const std::vector<std::string>& names = entry_of(entries, entries.contains("COLUMNS") ? "COLUMNS" : "FIELDS", file);
+    const auto given = [&](const char* name, const char* usual) {
+        return entries.contains(name) ? entry_of(entries, name, file) : std::vector<std::string>(names.size(), usual);
+    };
+    const std::vector<std::string> sizes = given("SIZE", "4"), types = given("TYPE", "F"), counts = given("COUNT", "1");
     if (names.size() > kMaxFields || sizes.size() != names.size() || types.size() != names.size() ||
         counts.size() != names.size()) {
         throw std::runtime_error(file + ": FIELDS, SIZE, TYPE and COUNT differ in number");
@@ -81,7 +82,7 @@ void read_fields(const Entries& entries, const std::string& file, PcdHeader& hea
                 throw std::runtime_error(file + ": " + names[i] + " must be one float32 or float64");
             }
             if (header.coordinates[axis].word >= 0) throw std::runtime_error(file + ": " + names[i] + " stands twice");
-            header.coordinates[axis] = {static_cast<int>(header.words_per_point), header.point_bytes, size};
+            header.coordinates[axis] = {static_cast<int>(header.words_per_point), header.point_bytes, size, 'f'};
         }
         header.words_per_point += count;
         header.point_bytes += size * count;
@@ -95,8 +96,9 @@ PcdHeader read_pcd_header(std::string_view bytes, const std::string& file) {
     PcdHeader header;
     const Entries entries = read_entries(bytes, header.data_begin, file);
     read_fields(entries, file, header);
-    header.width = count_of(entry_of(entries, "WIDTH", file)[0], kMaxCloudPoints, "WIDTH", file);
-    header.height = count_of(entry_of(entries, "HEIGHT", file)[0], kMaxCloudPoints, "HEIGHT", file);
+    const bool has_width = entries.contains("WIDTH") || !entries.contains("POINTS");
+    header.width = count_of(entry_of(entries, has_width ? "WIDTH" : "POINTS", file)[0], kMaxCloudPoints, "WIDTH", file);
+    header.height = has_width ? count_of(entry_of(entries, "HEIGHT", file)[0], kMaxCloudPoints, "HEIGHT", file) : 1;
     if (header.points() > kMaxCloudPoints) throw std::runtime_error(file + ": claims too many points");
     if (entries.contains("POINTS")) {
         const std::uint64_t points = count_of(entry_of(entries, "POINTS", file)[0], kMaxCloudPoints, "POINTS", file);
@@ -114,8 +116,8 @@ std::vector<Eigen::Vector3f> gather(std::string_view data, const PcdHeader& head
     std::vector<Eigen::Vector3f> points(header.points());
     for (std::size_t i = 0; i < points.size(); ++i) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            points[i][static_cast<int>(axis)] = read_coordinate(data.data() + begin[axis] + i * point_stride[axis],
-                                                                header.coordinates[axis].size, kSwap);
+            points[i][static_cast<int>(axis)] =
+                read_coordinate(data.data() + begin[axis] + i * point_stride[axis], header.coordinates[axis], kSwap);
         }
     }
     return points;

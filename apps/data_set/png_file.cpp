@@ -41,8 +41,26 @@ void check_cap(const std::filesystem::path& path, std::uint32_t width, std::uint
 constexpr std::size_t kHeaderBytes = 24;  // signature, length and name of IHDR, width, height
 constexpr std::size_t kWidthAt = 16, kHeightAt = 20;
 
+constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
+constexpr std::size_t kRosBytes = 12;  // a number for the format, and two floating point numbers
+
 bool has_png_header(std::string_view bytes) {
-    return bytes.size() >= kHeaderBytes && bytes.starts_with("\x89PNG\r\n\x1a\n");
+    return bytes.size() >= kHeaderBytes && bytes.starts_with(kSignature);
+}
+
+// The first `count` bytes of the PNG, behind ROS's header where there is one, whose length goes to `skipped`. Numbers
+// in that header are those by which floating point depth was made to counts of its inverse.
+std::string png_start(const std::filesystem::path& path, std::size_t count, std::size_t& skipped) {
+    std::string bytes = read_file_start(path, kRosBytes + count);
+    const bool ros = !bytes.starts_with(kSignature) &&
+                     std::string_view(bytes).substr(0, kRosBytes + kSignature.size()).ends_with(kSignature);
+    skipped = ros && bytes.size() > kRosBytes ? kRosBytes : 0;
+    if (skipped > 0 && bytes.find_first_not_of('\0', 4) < kRosBytes) {
+        throw png_error(path,
+                        "is a compressed ROS image of floating point depth, which holds inverse depth: export it "
+                        "as counts of millimetres (16UC1), or as NPY");
+    }
+    return bytes.substr(skipped, count);
 }
 
 std::uint32_t big_endian_at(std::string_view bytes, std::size_t at) {
@@ -66,12 +84,13 @@ struct OpenPng {
 
 OpenPng open_png(const std::filesystem::path& path, ImageSize expected) {
     OpenPng png;
-    png.bytes = read_file_start(path, kHeaderBytes);
+    std::size_t skipped = 0;
+    png.bytes = png_start(path, kHeaderBytes, skipped);
     if (!has_png_header(png.bytes) && png.bytes.size() == kHeaderBytes) throw png_error(path, "is not a PNG");
     // Where a file is shorter, the library says what is wrong.
     if (has_png_header(png.bytes)) {
         check_cap(path, big_endian_at(png.bytes, kWidthAt), big_endian_at(png.bytes, kHeightAt));
-        png.bytes = read_whole_file(path, max_png_bytes(png.bytes));
+        png.bytes = read_whole_file(path, max_png_bytes(png.bytes)).substr(skipped);
     }
     png.context.reset(spng_ctx_new(0));
     if (!png.context) throw std::bad_alloc();
@@ -106,7 +125,9 @@ void decode(OpenPng& png, void* pixels, std::size_t byte_count, int format, cons
     check(spng_decoded_image_size(png.context.get(), format, &needed), path);
     if (needed != byte_count) throw png_error(path, "has pixels of an unexpected size");
     check(spng_decode_image(png.context.get(), pixels, byte_count, format, 0), path);
-    check(spng_decode_chunks(png.context.get()), path);
+    // The pixels' own check sum stands at their end. What is odd about chunks behind them is of no concern.
+    const int rest = spng_decode_chunks(png.context.get());
+    if (rest == SPNG_ECHUNK_CRC || rest == SPNG_IO_EOF) check(rest, path);
 }
 
 // `path` is for messages.
@@ -159,7 +180,8 @@ std::size_t pixel_count(int width, int height) {
 
 ImageSize read_png_size(const std::filesystem::path& path) {
     // The header alone, by hand: a scene asks this of all its images before it starts.
-    const std::string bytes = read_file_start(path, kHeaderBytes);
+    std::size_t skipped = 0;
+    const std::string bytes = png_start(path, kHeaderBytes, skipped);
     if (!has_png_header(bytes)) throw png_error(path, "is not a PNG");
     const std::uint32_t width = big_endian_at(bytes, kWidthAt);
     const std::uint32_t height = big_endian_at(bytes, kHeightAt);
@@ -237,9 +259,13 @@ Mask read_mask_png(const std::filesystem::path& path, int expected_width, int ex
     constexpr std::size_t kChannels = 4;  // RGBA holds whatever else there is; 16 bits, so that a 1 of 65535 stays a 1
     std::vector<std::uint16_t> colours(mask.value.size() * kChannels);
     decode(png, colours.data(), colours.size() * sizeof(std::uint16_t), SPNG_FMT_RGBA16, path);
+    std::size_t transparent = 0;
+    for (std::size_t i = 0; i < mask.value.size(); ++i) transparent += colours[i * kChannels + 3] == 0 ? 1 : 0;
+    const bool alpha_is_mask = transparent > 0 && transparent < mask.value.size();
     for (std::size_t i = 0; i < mask.value.size(); ++i) {
         const std::uint16_t* colour = &colours[i * kChannels];
-        mask.value[i] = (colour[0] | colour[1] | colour[2]) != 0 ? 255 : 0;
+        const int shown = alpha_is_mask ? colour[3] : colour[0] | colour[1] | colour[2];
+        mask.value[i] = shown != 0 ? 255 : 0;
     }
     return mask;
 }

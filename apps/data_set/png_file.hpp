@@ -1,7 +1,8 @@
 // PNG files: depth (16-bit grey), masks (grey), pictures (RGB).
 //
 // Sizes are compared with what is expected, with a cap, and with what a file of that many bytes can hold at all, before
-// anything is allocated. All functions throw std::runtime_error naming the file and the cause.
+// anything is allocated. Broken chunks beside the pixels are passed over, as is the header of 12 bytes that ROS puts
+// before a PNG of counts (compressedDepth). All functions throw std::runtime_error naming the file and the cause.
 #pragma once
 
 #include <cstdint>
@@ -46,7 +47,8 @@ DepthImage read_depth_png(const std::filesystem::path& path, double depth_scale_
                           int expected_height = 0);
 void write_depth_png(const std::filesystem::path& path, const DepthImage& image, double depth_scale_mm);
 
-// Grey of 1, 2, 4, 8 or 16 bits, palette or RGB(A): any colour but black is the object. An alpha channel is ignored.
+// Grey of 1, 2, 4, 8 or 16 bits, palette or RGB(A): any colour but black is the object. Where an alpha channel makes
+// some pixels fully transparent and others not, it is the mask, and the colours are ignored.
 Mask read_mask_png(const std::filesystem::path& path, int expected_width = 0, int expected_height = 0);
 void write_mask_png(const std::filesystem::path& path, const Mask& mask);  // 8-bit grey, 0 and 255
 

@@ -9,6 +9,7 @@
 #include "apps/base/number_text.hpp"
 #include "apps/base/text_split.hpp"
 #include "apps/data_set/cloud_fields.hpp"
+#include "apps/data_set/image_files.hpp"
 
 namespace nearpose::data_set {
 namespace {
@@ -18,6 +19,10 @@ constexpr std::size_t kMaxHeaderLine = 4096;
 
 bool is_measured(const Eigen::Vector3f& point) {
     return point.allFinite() && !point.isZero(0.0F);
+}
+
+bool is_cloud(const std::string& extension) {
+    return extension == ".pcd" || extension == ".ply" || extension == ".xyz" || extension == ".pts";
 }
 
 bool is_digit(char c) {
@@ -44,7 +49,8 @@ std::string_view header_line(std::string_view bytes, std::size_t& position, cons
 }
 
 std::vector<Eigen::Vector3f> read_text_points(std::string_view text, std::uint64_t count, std::size_t words_per_point,
-                                              const CoordinateFields& fields, const std::string& file) {
+                                              const CoordinateFields& fields, const std::string& file,
+                                              bool more_words) {
     // A digit and a separator for each number is the least that a whole file has.
     if (count > text.size() / (2 * words_per_point) + 1) throw std::runtime_error(file + ": cut short: too few points");
     std::vector<Eigen::Vector3f> points;
@@ -57,7 +63,8 @@ std::vector<Eigen::Vector3f> read_text_points(std::string_view text, std::uint64
         position = end + 1;
         if (numbers.empty()) continue;
         const std::string place = file + ": point " + std::to_string(points.size()) + ": ";
-        if (numbers.size() != words_per_point) throw std::runtime_error(place + "has a wrong number of values");
+        const bool enough = more_words ? numbers.size() >= words_per_point : numbers.size() == words_per_point;
+        if (!enough) throw std::runtime_error(place + "has a wrong number of values");
         Eigen::Vector3f point;
         for (int axis = 0; axis < 3; ++axis) {
             const std::string_view word =
@@ -72,12 +79,12 @@ std::vector<Eigen::Vector3f> read_text_points(std::string_view text, std::uint64
 }
 
 CloudFile read_cloud(const std::filesystem::path& path) {
-    const std::string extension = path.extension().string();
-    if (extension != ".pcd" && extension != ".ply") {
-        throw std::runtime_error(path.string() + ": is neither a .pcd nor a .ply file");
-    }
+    const std::string extension = lower_extension(path);
+    if (!is_cloud(extension)) throw std::runtime_error(path.string() + ": is no .pcd, .ply, .xyz or .pts file");
     const std::string bytes = read_whole_file(path, kMaxCloudBytes);
-    CloudFile cloud = extension == ".pcd" ? read_pcd(bytes, path.string()) : read_ply_cloud(bytes, path.string());
+    CloudFile cloud = extension == ".pcd"   ? read_pcd(bytes, path.string())
+                      : extension == ".ply" ? read_ply_cloud(bytes, path.string())
+                                            : read_text_cloud(bytes, path.string());
     std::vector<Eigen::Vector3f>& points = cloud.points_in_camera;
     if (cloud.organised()) {
         constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
@@ -116,10 +123,11 @@ std::vector<std::filesystem::path> list_clouds(const std::filesystem::path& fold
     if (!std::filesystem::is_directory(folder)) throw std::runtime_error(folder.string() + ": is not a folder");
     std::vector<std::filesystem::path> clouds;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-        const std::string extension = entry.path().extension().string();
-        if (extension == ".pcd" || extension == ".ply") clouds.push_back(entry.path());
+        if (is_cloud(lower_extension(entry.path()))) clouds.push_back(entry.path());
     }
-    if (clouds.empty()) throw std::runtime_error(folder.string() + ": has no .pcd or .ply file");
+    if (clouds.empty()) {
+        throw std::runtime_error(folder.string() + ": has no .pcd, .ply, .xyz or .pts file; " + contents_of(folder));
+    }
     std::sort(clouds.begin(), clouds.end(),
               [](const auto& a, const auto& b) { return numeric_less(a.filename().string(), b.filename().string()); });
     return clouds;

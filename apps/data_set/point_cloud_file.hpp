@@ -1,4 +1,4 @@
-// Point clouds in the camera's frame, metres: .pcd (ascii, binary, binary_compressed) and .ply.
+// Point clouds in the camera's frame, metres: .pcd (ascii, binary, binary_compressed), .ply, and text (.xyz, .pts).
 #pragma once
 
 #include <Eigen/Core>
@@ -21,7 +21,7 @@ struct CloudFile {
 // compared with the bytes that are there before anything is allocated.
 CloudFile read_cloud(const std::filesystem::path& path);
 
-// The .pcd and .ply files of a folder, numbers in names ordered as numbers (2 before 10). None is an error.
+// The clouds of a folder, numbers in names ordered as numbers (2 before 10). None is an error.
 std::vector<std::filesystem::path> list_clouds(const std::filesystem::path& folder);
 
 // Order of names with the numbers in them compared as numbers; for equal numbers the shorter name first.

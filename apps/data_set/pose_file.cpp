@@ -1,6 +1,6 @@
 #include "apps/data_set/pose_file.hpp"
 
-#include "apps/data_set/bop_scene.hpp"
+#include "apps/data_set/bop_pose.hpp"
 #include "apps/data_set/json_file.hpp"
 
 namespace nearpose::program {

@@ -16,7 +16,9 @@ std::optional<Visibility> visibility_in(const data_set::Frame& frame, const data
     if (depth.width != frame.camera.width || depth.height != frame.camera.height) {
         throw std::runtime_error(frame.depth.string() + ": is not of the camera's size");
     }
-    return visibility_of(depth, *masks.load(frame), frame.camera);
+    const data_set::FrameMask mask = masks.load(frame);
+    if (!mask.mask) throw std::runtime_error(mask.notice);
+    return visibility_of(depth, *mask.mask, frame.camera);
 }
 
 }  // namespace

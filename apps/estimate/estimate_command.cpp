@@ -19,6 +19,7 @@
 #include "apps/estimate/verdict_summary.hpp"
 #include "apps/part_model/model_symmetries.hpp"
 #include "apps/runs/estimator_setup.hpp"
+#include "apps/runs/input_doubts.hpp"
 #include "apps/runs/run_folder.hpp"
 #include "core/estimator.hpp"
 
@@ -28,6 +29,7 @@ namespace {
 struct Tally {
     int frames = 0, unread = 0, seen = 0;
     std::vector<JudgedFrame> judged;
+    data_set::Notices errors, notices;  // what has been said of frames: each matter once
 };
 
 JudgedFrame judged(int frame_id, const UpdateResult& result) {
@@ -104,6 +106,14 @@ RunDescription run_description(const EstimateOptions& options, const FrameSource
             1e-3 * options.budget_ms};
 }
 
+// What every frame of a run is estimated with.
+struct RunContext {
+    const EstimateOptions& options;
+    const SharedOptions& shared;
+    const FrameSource& source;
+    const Mesh& mesh;
+};
+
 // What the frames lack for what was asked, before hours are spent.
 void check_motion(const EstimateOptions& options, const FrameSource& source) {
     if (options.outputs.trajectory.empty() || options.outputs.trajectory_frame != "world") return;
@@ -132,7 +142,7 @@ std::string why_unseen(const FrameSource& source, std::size_t index, const Obser
         if (wanted && data.depth.depth_m[i] > 0.0F) depths_m.push_back(data.depth.depth_m[i]);
     }
     for (const Eigen::Vector3f& point : data.points_in_camera) depths_m.push_back(point.z());
-    if (depths_m.empty()) return "nothing is measured in its mask";
+    if (depths_m.empty()) return data.mask ? "nothing is measured in its mask" : "no pixel has a depth";
     const auto middle = depths_m.begin() + static_cast<std::ptrdiff_t>(depths_m.size() / 2);
     std::nth_element(depths_m.begin(), middle, depths_m.end());
     const SensorModel& sensor = observation.sensor();
@@ -141,22 +151,42 @@ std::string why_unseen(const FrameSource& source, std::size_t index, const Obser
            data_set::format_fixed(*middle, 4) + " m: is the depth's scale right?";
 }
 
-void run_frame(const EstimateOptions& options, const SharedOptions& shared, const FrameSource& source,
-               std::size_t index, PoseEstimator& estimator, EstimateOutputs& outputs, Tally& tally) {
-    const FrameInfo& frame = source.frames()[index];
-    const std::string name = "frame " + std::to_string(frame.id);
-    FrameReport report{frame.id, frame.stamp_s, 0.0, {}};
-    FrameData data;
+// A frame that cannot be read stays empty: the control still moves the pose.
+FrameData read_frame(const FrameSource& source, std::size_t index, FrameReport& report) {
     try {
-        data = source.load(index);
+        return source.load(index);
     } catch (const std::exception& error) {
-        // An empty observation stands in, so that the control still moves the pose.
         report.error = error.what();
+        return {};
     }
+}
+
+// Says what is to be said of the frame, where it has not been said of another.
+void note(int frame_id, const std::string& text, const std::string& consequence, const SharedOptions& shared,
+          Tally& tally) {
+    if (!tally.notices.add(frame_id, text)) return;
+    print_notice("frame " + std::to_string(frame_id) + ": " + text + consequence, shared.quiet);
+}
+
+// Before the first frame that could be read: whether its depth can be of the part.
+void note_scale(const FrameInfo& frame, const FrameData& data, const Mesh& mesh, const SharedOptions& shared,
+                Tally& tally) {
+    if (tally.frames > tally.unread || data.depth.depth_m.empty()) return;
+    const std::string doubt = scale_doubt(data.depth, data.mask ? &*data.mask : nullptr, frame.camera, extent_of(mesh));
+    if (!doubt.empty()) note(frame.id, doubt, "", shared, tally);
+}
+
+void run_frame(const RunContext& run, std::size_t index, PoseEstimator& estimator, EstimateOutputs& outputs,
+               Tally& tally) {
+    const FrameInfo& frame = run.source.frames()[index];
+    FrameReport report{frame.id, frame.stamp_s, 0.0, {}};
+    FrameData data = read_frame(run.source, index, report);
+    for (const std::string& text : data.notices) note(frame.id, text, "", run.shared, tally);
+    note_scale(frame, data, run.mesh, run.shared, tally);
     const auto begin = std::chrono::steady_clock::now();
     const Observation observation = observe_frame(frame, std::move(data));
     const UpdateResult result =
-        estimator.update(observation, options.no_control ? std::nullopt : control_of(source, index));
+        estimator.update(observation, run.options.no_control ? std::nullopt : control_of(run.source, index));
     report.time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
     const bool predicted = result.status == UpdateStatus::kPredicted;
@@ -164,14 +194,27 @@ void run_frame(const EstimateOptions& options, const SharedOptions& shared, cons
     ++tally.frames;
     if (!report.error.empty()) {
         ++tally.unread;
-        print_error(name + ": " + report.error + consequence);
+        if (tally.errors.add(frame.id, report.error)) {
+            print_error("frame " + std::to_string(frame.id) + ": " + report.error + consequence);
+        }
     } else if (result.status != UpdateStatus::kEstimated) {
-        print_notice(name + ": the object is not seen (" + why_unseen(source, index, observation) + ")" + consequence,
-                     shared.quiet);
+        note(frame.id, "the object is not seen (" + why_unseen(run.source, index, observation) + ")", consequence,
+             run.shared, tally);
     }
     if (result.status == UpdateStatus::kEstimated) ++tally.seen;
     tally.judged.push_back(judged(frame.id, result));
     outputs.append(frame, report, observation, result, estimator.particles());
+}
+
+// Once, at the end: in how many frames what was said of one is so, and what is odd about the stamps.
+void print_repeats(const Tally& tally, const FrameSource& source, const SharedOptions& shared) {
+    for (const data_set::Notice& error : tally.errors.all()) {
+        if (error.times > 1) print_error(repeats_of(error));
+    }
+    for (const data_set::Notice& notice : tally.notices.all()) {
+        if (notice.times > 1) print_notice(repeats_of(notice), shared.quiet);
+    }
+    for (const data_set::Notice& notice : source.time_notices().all()) print_notice(to_text(notice), shared.quiet);
 }
 
 // Nothing where the part was never seen: exit_code says that, and what to check.
@@ -209,7 +252,7 @@ int estimate(const EstimateOptions& given, const SharedOptions& shared) {
     PoseEstimator estimator = start_estimator(options, mesh, shared);
     EstimateOutputs outputs(options.outputs, run_description(options, *source), mesh);
     if (!options.outputs.run.empty()) write_run_record(options.outputs.run, options, source->scene_id());
-    if (!source->notice().empty()) print_notice(source->notice(), shared.quiet);
+    for (const data_set::Notice& notice : source->notices().all()) print_notice(to_text(notice), shared.quiet);
     const std::string data_set_name =  // <data set>/test/<scene>
         std::filesystem::absolute(options.scene / "../../.").lexically_normal().parent_path().filename().string();
     if (const auto notice = data_set::bop_file_name_notice(given.outputs.out, data_set_name);
@@ -220,10 +263,11 @@ int estimate(const EstimateOptions& given, const SharedOptions& shared) {
     Tally tally;
     Progress progress("estimate", static_cast<int>(source->frames().size()), shared.quiet);
     for (std::size_t index = 0; index < source->frames().size() && !interrupted(); ++index) {
-        run_frame(options, shared, *source, index, estimator, outputs, tally);
+        run_frame({options, shared, *source, mesh}, index, estimator, outputs, tally);
         progress.step();
     }
     outputs.close();
+    print_repeats(tally, *source, shared);
     print_verdicts(tally, shared);
     return exit_code(tally);
 }

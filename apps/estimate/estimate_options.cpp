@@ -17,12 +17,14 @@ void add_input_options(CLI::App& command, EstimateOptions& options) {
     add_bop_model_options(command, options.model);
     add_model_file_options(command, options.model);
     command.add_flag("--no-mask", options.no_mask, "Use every measured point in range, not the mask's alone");
+    command.add_flag("--mask-first-frame", options.mask_first_frame,
+                     "Use the first frame's mask alone, to start with; the other frames' are left unread");
     command.add_option("--mask-index", options.mask_index, "KKKKKK of the mask files [from scene_gt.json, else 0]")
         ->check(CLI::Range(0, 999999));
     command.add_flag("--no-control", options.no_control, "Leave the measured camera motion unused");
     command.add_option("--first", options.first, "Number of the first frame [the scene's first]");
     command.add_option("--last", options.last, "Number of the last frame [the scene's last]");
-    command.add_option("--scene-id", options.scene_id, "scene_id of the results [the folder's number]");
+    command.add_option("--scene-id", options.scene_id, "scene_id of the results [the folder's number, else 0]");
     command.add_option("--fps", options.fps, "Frames per second where the scene has no time stamps")
         ->check(CLI::Range(1e-3, 1e6));
 }
@@ -97,6 +99,9 @@ void check(const EstimateOptions& options) {
     }
     if (options.clouds.empty() != options.camera.empty()) throw BadUse("--clouds and --camera go together");
     if (options.mask_index && options.no_mask) throw BadUse("--mask-index and --no-mask exclude each other");
+    if (options.mask_first_frame && (options.no_mask || options.scene.empty())) {
+        throw BadUse("--mask-first-frame belongs to the masks of a --scene");
+    }
     if (options.first && options.last && *options.first > *options.last) throw BadUse("--first lies after --last");
     if (options.outputs.trajectory_frame == "world" && !options.clouds.empty()) {
         throw BadUse("--trajectory-frame world needs the camera motion of a --scene");

@@ -1,4 +1,5 @@
 #include "apps/experiment/run_setup.hpp"
+#include "apps/data_set/model_diameter.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -7,7 +8,6 @@
 #include "apps/data_set/trajectory_tum.hpp"
 #include "apps/depth_sensor/sensor_file.hpp"
 #include "apps/experiment/cad_error.hpp"
-#include "apps/part_model/import_model.hpp"
 #include "apps/part_model/model_input.hpp"
 #include "apps/part_model/model_symmetries.hpp"
 #include "raycast/mesh_loader.hpp"

@@ -31,7 +31,4 @@ struct ModelImportSummary {
 // Adds to a models_info.json that is there already. Throws std::runtime_error naming the file and the cause.
 ModelImportSummary import_model(const ModelImport& options);
 
-// The largest distance of two of the points; 0 for fewer than two.
-double diameter_of(const std::vector<Eigen::Vector3f>& points);
-
 }  // namespace nearpose::data_set

@@ -139,7 +139,7 @@ Json run_json(const program::RunRecord& record, const RunInput& input) {
             {"views", options.views},
             {"particles", options.particles.value_or(program::EstimatorSetup{}.particles)},
             {"seed", options.seed},
-            {"mask", !options.no_mask && input.source->notice().empty()},
+            {"mask", !options.no_mask && input.source->has_masks()},
             {"motion", !options.no_control},
             {"initial_pose", options.initial_pose.string()},
             {"program", program}};

@@ -8,30 +8,31 @@
 #include "apps/base/number_text.hpp"
 #include "apps/data_set/bop_masks.hpp"
 #include "apps/data_set/camera_json.hpp"
+#include "apps/data_set/image_files.hpp"
 #include "apps/data_set/point_cloud_file.hpp"
+#include "apps/runs/input_doubts.hpp"
 
 namespace nearpose::program {
 namespace {
 
-bool has_measurement(const DepthImage& depth) {
-    for (const float value_m : depth.depth_m) {
-        if (value_m > 0.0F) return true;
-    }
-    return false;
-}
-
 class BopSource : public FrameSource {
   public:
     BopSource(const std::filesystem::path& folder, const data_set::SceneOptions& options, const MaskOptions& masks)
-        : scene_(data_set::open_scene(folder, options)) {
+        : scene_(data_set::open_scene(folder, options)), first_mask_only_(masks.first_frame_only) {
         scene_id_ = scene_.id;
+        notices_ = scene_.notices;
+        time_notices_ = scene_.time_notices;
         for (const data_set::Frame& frame : scene_.frames) {
             frames_.push_back({frame.id, frame.stamp_s, frame.camera, frame.camera_from_world});
+            const std::string doubt = camera_doubt(frame.camera);
+            if (!doubt.empty()) notices_.add(frame.id, (folder / "scene_camera.json").string() + ": " + doubt);
         }
         if (!masks.use) return;
         masks_.emplace(scene_, masks.object_id, masks.index);
-        if (!masks_->available()) {
-            notice_ = folder.string() + ": no mask_visib folder; every measured point in range may be the object";
+        has_masks_ = masks_->available();
+        if (!has_masks_) {
+            notices_.add(0,
+                         folder.string() + ": no mask_visib folder; every measured point in range may be the object");
         }
     }
 
@@ -39,29 +40,25 @@ class BopSource : public FrameSource {
         const data_set::Frame& frame = scene_.frames[index];
         FrameData data;
         data.depth = data_set::load_depth(frame);
-        if (!has_measurement(data.depth)) throw std::runtime_error(frame.depth.string() + ": no pixel has a depth");
-        if (masks_) data.mask = masks_->load(frame);
+        if (!masks_ || (first_mask_only_ && index > 0)) return data;
+        data_set::FrameMask mask = masks_->load(frame);
+        data.mask = std::move(mask.mask);
+        if (!mask.notice.empty()) data.notices.push_back(mask.notice);
+        const std::string doubt = data.mask ? mask_doubt(data.depth, *data.mask) : std::string();
+        if (!doubt.empty()) data.notices.push_back(doubt);
         return data;
     }
 
   private:
     data_set::BopScene scene_;
     std::optional<data_set::MaskSource> masks_;
+    bool first_mask_only_;
 };
-
-// The number that a file's name ends in.
-std::optional<int> trailing_number(const std::filesystem::path& path) {
-    const std::string name = path.stem().string();
-    const std::size_t last = name.find_last_not_of("0123456789");
-    const auto number = data_set::parse_integer(name.substr(last == std::string::npos ? 0 : last + 1));
-    if (!number || *number > 1'000'000'000) return std::nullopt;
-    return static_cast<int>(*number);
-}
 
 std::vector<int> cloud_numbers(const std::vector<std::filesystem::path>& files) {
     std::vector<int> numbers;
     for (const std::filesystem::path& file : files) {
-        const std::optional<int> number = trailing_number(file);
+        const std::optional<int> number = data_set::trailing_number(file);
         if (!number || (!numbers.empty() && *number <= numbers.back())) {
             numbers.clear();
             for (std::size_t i = 0; i < files.size(); ++i) numbers.push_back(static_cast<int>(i));

@@ -27,6 +27,7 @@ struct FrameData {
     DepthImage depth;
     std::optional<Mask> mask;
     std::vector<Eigen::Vector3f> points_in_camera;  // [m]; used where there is no depth image
+    std::vector<std::string> notices;               // what is odd about the files, and what was taken instead
 };
 
 class FrameSource {
@@ -35,8 +36,10 @@ class FrameSource {
 
     int scene_id() const { return scene_id_; }
     const std::vector<FrameInfo>& frames() const { return frames_; }
-    // What the user should know before the run; empty: nothing.
-    const std::string& notice() const { return notice_; }
+    // What the user should know before the run, and at its end.
+    const data_set::Notices& notices() const { return notices_; }
+    const data_set::Notices& time_notices() const { return time_notices_; }
+    bool has_masks() const { return has_masks_; }
 
     // Throws std::runtime_error naming the file and the cause; the other frames are not concerned.
     virtual FrameData load(std::size_t index) const = 0;
@@ -44,13 +47,15 @@ class FrameSource {
   protected:
     int scene_id_ = 0;
     std::vector<FrameInfo> frames_;
-    std::string notice_;
+    data_set::Notices notices_, time_notices_;
+    bool has_masks_ = false;
 };
 
 struct MaskOptions {
     bool use = true;
     int object_id = 1;
     std::optional<int> index;  // KKKKKK of the files; else from scene_gt.json, else 0
+    bool first_frame_only = false;
 };
 
 std::unique_ptr<FrameSource> open_bop_source(const std::filesystem::path& scene, const data_set::SceneOptions& options,

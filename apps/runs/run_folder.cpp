@@ -37,6 +37,7 @@ Json options_json(const EstimateOptions& options) {
             {"model", path_json(options.model.model)},
             {"unit", text_json(options.model.unit)},
             {"no-mask", options.no_mask},
+            {"mask-first-frame", options.mask_first_frame},
             {"mask-index", number_json(options.mask_index)},
             {"no-control", options.no_control},
             {"first", number_json(options.first)},
@@ -101,6 +102,7 @@ EstimateOptions options_of(const JsonValue& json) {
     options.model.model = text_of(json, "model");
     options.model.unit = text_of(json, "unit");
     options.no_mask = flag_of(json, "no-mask");
+    options.mask_first_frame = flag_of(json, "mask-first-frame");
     options.mask_index = integer_of(json, "mask-index");
     options.no_control = flag_of(json, "no-control");
     options.first = integer_of(json, "first");

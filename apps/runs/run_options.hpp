@@ -30,7 +30,7 @@ struct EstimateOptions {
     std::optional<int> particles;  // not given: up to the usual number, fewer in tracking
     int threads = EstimatorOptions{}.num_threads;
     std::uint64_t seed = EstimatorOptions{}.seed;
-    bool no_mask = false, no_control = false;
+    bool no_mask = false, mask_first_frame = false, no_control = false;
     std::optional<int> mask_index, first, last, scene_id;
     double fps = 30.0;
     std::filesystem::path initial_pose;

@@ -1,4 +1,5 @@
 #include "apps/simulate/simulate.hpp"
+#include "apps/data_set/model_diameter.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -12,7 +13,6 @@
 #include "apps/data_set/bop_writer.hpp"
 #include "apps/data_set/png_file.hpp"
 #include "apps/data_set/trajectory_tum.hpp"
-#include "apps/part_model/import_model.hpp"
 #include "apps/part_model/model_symmetries.hpp"
 #include "apps/scenes/parts.hpp"
 #include "apps/simulate/staged_folder.hpp"

@@ -2,9 +2,9 @@
 
 #include <numbers>
 
+#include "apps/data_set/model_diameter.hpp"
 #include "apps/depth_sensor/sensor_file.hpp"
 #include "apps/error_measures/frame_errors.hpp"
-#include "apps/part_model/import_model.hpp"
 #include "apps/part_model/model_symmetries.hpp"
 #include "apps/scenes/parts.hpp"
 #include "core/estimator.hpp"

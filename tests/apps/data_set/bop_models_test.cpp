@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "tests/apps/support/test_files.hpp"
@@ -58,7 +59,6 @@ TEST(BopModels, BadInfoIsRefusedByName) {
         write_text(file, "{\"4\": {" + entry + "}}");
         expect_error([&] { read_models_info(file); }, parts);
     };
-    refused(box, {"models_info.json", "4", "diameter"});
     refused(R"("diameter": -1, )" + box, {"4/diameter", "positive"});
     refused(R"("diameter": 1, "min_x": 0)", {"4", "min_y"});
     refused(R"("diameter": 1, "symmetries_discrete": [[1, 0]], )" + box, {"4/symmetries_discrete/0", "16"});
@@ -68,6 +68,25 @@ TEST(BopModels, BadInfoIsRefusedByName) {
     refused(R"("diameter": 1, "symmetries_discrete": [[1,0,0,0, 0,1,0,0, 0,0,1,0, 5,0,0,1]], )" + box, {"rigid"});
     refused(R"("diameter": 1, "symmetries_continuous": [{"axis": [0,0,0], "offset": [0,0,0]}], )" + box,
             {"axis", "direction"});
+}
+
+TEST(BopModels, WhatIsMissingIsTakenFromTheMesh) {
+    const fs::path folder = new_folder();
+    write_text(folder / "models_info.json", R"({"4": {"symmetries_continuous": [{"axis": [0, 0, 2]}],
+      "symmetries_discrete": [[[-1,0,0,0], [0,-1,0,0], [0,0,1,5], [0,0,0,1]]]}})");
+    write_text(folder / "obj_000004.ply",
+               "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+               "element face 1\nproperty list uchar int vertex_indices\nend_header\n-1 0 0\n2 0 0\n0 4 0\n3 0 1 2\n");
+    const ModelInfo info = read_model_info(folder, 4);
+    EXPECT_NEAR(info.diameter_m, std::sqrt(20.0) * 1e-3, 1e-9);
+    EXPECT_LT((info.box_min_in_object_m - Eigen::Vector3d(-1e-3, 0, 0)).norm(), 1e-12);
+    EXPECT_LT((info.box_max_in_object_m - Eigen::Vector3d(2e-3, 4e-3, 0)).norm(), 1e-12);
+    EXPECT_LT(info.continuous_symmetries.at(0).offset_in_object_m.norm(), 1e-15);
+    EXPECT_NEAR(info.discrete_symmetries.at(0).translation.z(), 5e-3, 1e-15);
+    // What a file does not say is not made up when it is written anew.
+    write_models_info(folder / "models_info.json", read_models_info(folder / "models_info.json"));
+    EXPECT_EQ(read_models_info(folder / "models_info.json").at(4).diameter_m, 0.0);
+    EXPECT_EQ(read_models_info(folder / "models_info.json").at(4).continuous_symmetries.size(), 1U);
 }
 
 TEST(BopModels, ASymmetryIsRowMajorInMillimetres) {

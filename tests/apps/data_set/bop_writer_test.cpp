@@ -61,7 +61,7 @@ TEST(BopWriter, AWholeSceneComesBack) {
     EXPECT_EQ(frame.stamp_s, *expected.timestamp_s);
     EXPECT_LT(log(frame.camera_from_world->inverse() * *expected.camera_from_world).norm(), 1e-12);
     EXPECT_FLOAT_EQ(load_depth(frame).depth_m[3], 0.25F);
-    const Mask read = *MaskSource(scene, 7).load(frame);
+    const Mask read = *MaskSource(scene, 7).load(frame).mask;
     EXPECT_EQ(read.value[5], 255);
     EXPECT_EQ(read.value[4], 0);
     EXPECT_TRUE(fs::exists(mask_path(scene_folder, 11, 0, false)));

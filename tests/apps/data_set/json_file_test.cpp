@@ -44,11 +44,34 @@ TEST(JsonFile, ErrorsNameFilePlaceAndKey) {
 TEST(JsonFile, BrokenFilesAreRefusedWithThePlace) {
     expect_error([] { parsed(""); }, {"a.json", "not JSON"});
     expect_error([] { parsed(R"({"3": {"cam_K": [1, 2)"); }, {"a.json", "3/cam_K", "not JSON"});
-    // Python writes NaN without being asked; it is no JSON.
-    expect_error([] { parsed(R"({"3": {"cam_K": [1, 2]}, "4": {"cam_R_w2c": [NaN]}})"); }, {"4/cam_R_w2c", "not JSON"});
     expect_error([] { parsed(R"({"3": {"x": 1e999}})"); }, {"a.json"});
     expect_error([] { parsed(R"({"3": {"x": 1, "y": 2, "x": 3}})"); }, {"3/x", "twice"});
     EXPECT_NO_THROW(parsed(R"({"3": {"x": 1}, "4": {"x": 1}})"));
+}
+
+TEST(JsonFile, NumbersThatJsonHasNoWordsForAreNoNumbers) {
+    const JsonFile file = parsed(R"({"x": [NaN, -Infinity, inf, -nan], "NaN": "a \"NaN\" \\", "last": nan})");
+    for (const JsonValue& value : file.root().at("x").elements()) {
+        expect_error([&] { value.number(); }, {"a.json", "x/", "null or NaN"});
+    }
+    EXPECT_EQ(file.root().at("NaN").text(), "a \"NaN\" \\");
+    expect_error([&] { file.root().at("last").number(); }, {"last", "null or NaN"});
+}
+
+TEST(JsonFile, NumbersMayBeTextAndRows) {
+    const JsonFile file =
+        parsed(R"({"x": ["1.5", 2, "-3e-1"], "rows": [[1, 2], ["3", 4]], "bad": ["1,5"], "s": "nan"})");
+    EXPECT_EQ(file.root().at("x").numbers(3), (std::vector<double>{1.5, 2.0, -0.3}));
+    EXPECT_EQ(file.root().at("rows").numbers(4), (std::vector<double>{1.0, 2.0, 3.0, 4.0}));
+    expect_error([&] { file.root().at("rows").numbers(2); }, {"rows", "2 numbers"});
+    expect_error([&] { file.root().at("bad").numbers(); }, {"bad/0", "number"});
+    expect_error([&] { file.root().at("s").number(); }, {"s", "finite"});
+}
+
+TEST(JsonFile, ValuesAreCounted) {
+    std::string text = "[0";
+    for (int i = 1; i < kMaxJsonValues; ++i) text += ",0";
+    expect_error([&] { parsed(text + "]"); }, {"a.json", "more than 4000000 values"});
 }
 
 TEST(JsonFile, DepthIsLimited) {

@@ -135,6 +135,55 @@ TEST(PngFile, MasksOfManyKinds) {
     EXPECT_EQ(read_mask_png(folder / "rgb.png").value, (std::vector<std::uint8_t>{0, 255}));
 }
 
+TEST(PngFile, AMaskMayStandInTheAlphaChannel) {
+    const fs::path folder = new_folder();
+    const auto rgba = [&](const std::string& row) {
+        return read_mask_png(write_text(folder / "a.png", png_bytes(3, 1, 8, 6, '\0' + row))).value;
+    };
+    const std::vector<std::uint8_t> middle = {0, 255, 0};
+    const std::string none(4, '\0'), full(4, '\xff');
+    EXPECT_EQ(rgba(none + full + none), middle);
+    EXPECT_EQ(rgba(std::string("\xff\xff\xff\0", 4) + full + std::string("\xff\xff\xff\0", 4)), middle);  // white
+    EXPECT_EQ(rgba(none + std::string("\0\0\0\x80", 4) + none), middle);  // black, half transparent
+    // Where alpha tells nothing the colour does.
+    EXPECT_EQ(rgba(std::string("\0\0\0\xff", 4) + full + std::string("\0\0\0\xff", 4)), middle);
+    EXPECT_EQ(rgba(none + std::string("\xff\0\0\0", 4) + none), middle);
+    EXPECT_EQ(rgba(std::string("\0\0\0\x80", 4) + full + std::string("\0\0\0\x80", 4)), middle);
+}
+
+TEST(PngFile, BrokenChunksBesideThePixelsArePassedOver) {
+    const fs::path folder = new_folder();
+    write_count_png(folder / "whole.png", ramp(7, 5));
+    const std::string whole = read_text(folder / "whole.png");
+    const std::size_t data_begin = 33, end_begin = whole.size() - 12;  // behind the header, before IEND
+    std::string bad_sum = png_chunk("gAMA", std::string("\0\0\1\0", 4));
+    bad_sum.back() = static_cast<char>(bad_sum.back() ^ 1);
+    for (const std::string& chunk :
+         {bad_sum, png_chunk("gAMA", "x"), png_chunk("tEXt", "no end of the name"), png_chunk("tIME", "abcdefg"),
+          png_chunk("zTXt", std::string("a\0\0rubbish", 10)), png_chunk("iCCP", std::string("a\0\0rubbish", 10)),
+          png_chunk("pHYs", ""), png_chunk("eXIf", "rubbish"), png_chunk("sBIT", "\x63"),
+          png_chunk("abCd", "private")}) {
+        for (const std::size_t place : {data_begin, end_begin}) {
+            write_text(folder / "odd.png", whole.substr(0, place) + chunk + whole.substr(place));
+            EXPECT_EQ(read_count_png(folder / "odd.png").counts, ramp(7, 5).counts) << chunk.substr(4, 4) << place;
+        }
+    }
+}
+
+TEST(PngFile, TheHeaderOfACompressedRosImageIsPassedOver) {
+    const fs::path folder = new_folder();
+    write_count_png(folder / "whole.png", ramp(7, 5));
+    const std::string whole = read_text(folder / "whole.png");
+    const fs::path file = write_text(folder / "ros.png", std::string(12, '\0') + whole);
+    EXPECT_EQ(read_count_png(file).counts, ramp(7, 5).counts);
+    EXPECT_EQ(read_png_size(file), (ImageSize{7, 5}));
+    // Parameters of its inverse depth.
+    write_text(file, std::string(4, '\0') + "\1\2\3\4\1\2\3\4" + whole);
+    expect_error([&] { read_count_png(file); }, {"ros.png", "floating point depth"});
+    write_text(file, std::string(11, '\0') + whole);
+    expect_error([&] { read_count_png(file); }, {"ros.png", "not a PNG"});
+}
+
 TEST(PngFile, AFullDiskAndWrongArgumentsAreReported) {
     expect_error([] { write_count_png("/dev/full", ramp(4, 4)); }, {"/dev/full", "No space left"});
     expect_error([] { write_rgb_png("x.png", 2, 2, std::vector<std::uint8_t>(5)); }, {"x.png"});

@@ -179,6 +179,63 @@ TEST(PlyCloud, AllThreeFormats) {
     EXPECT_EQ(read_cloud(write_text(folder / "a.ply", text)).points_in_camera, (std::vector<Eigen::Vector3f>{point}));
 }
 
+// Millimetres of integers are no metres, but a cloud of them is one.
+TEST(PlyCloud, CoordinatesMayBeWholeNumbers) {
+    const fs::path file = new_folder() / "a.ply";
+    const std::string header =
+        " 1.0\nelement vertex 2\nproperty short x\nproperty uchar y\nproperty int z\nend_header\n";
+    const std::vector<Eigen::Vector3f> points = {{-2.0F, 200.0F, 3.0F}, {1.0F, 0.0F, 70000.0F}};
+    write_text(file, "ply\nformat ascii" + header + "-2 200 3\n1 0 70000\n");
+    EXPECT_EQ(read_cloud(file).points_in_camera, points);
+    write_text(file, "ply\nformat binary_big_endian" + header + raw<std::int16_t>(-2, true) + '\xc8' +
+                         raw<std::int32_t>(3, true) + raw<std::int16_t>(1, true) + '\0' +
+                         raw<std::int32_t>(70000, true));
+    EXPECT_EQ(read_cloud(file).points_in_camera, points);
+}
+
+TEST(PlyCloud, VerticesMayHaveLists) {
+    const fs::path file = new_folder() / "a.ply";
+    const std::string header =
+        " 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+        "property list uchar short seen_by\nproperty uchar red\nend_header\n";
+    const std::vector<Eigen::Vector3f> points = {{1.0F, 2.0F, 3.0F}, {4.0F, 5.0F, 6.0F}};
+    write_text(file, "ply\nformat ascii" + header + "1 2 3 2 7 8 255\n4 5 6 0 255\n");
+    EXPECT_EQ(read_cloud(file).points_in_camera, points);
+    const auto xyz = [](float x, float y, float z) { return raw(x, false) + raw(y, false) + raw(z, false); };
+    const std::string data = xyz(1, 2, 3) + '\2' + std::string(4, 'n') + 'r' + xyz(4, 5, 6) + '\0' + 'r';
+    write_text(file, "ply\nformat binary_little_endian" + header + data);
+    EXPECT_EQ(read_cloud(file).points_in_camera, points);
+    for (std::size_t length = 0; length < data.size(); ++length) {
+        write_text(file, "ply\nformat binary_little_endian" + header + data.substr(0, length));
+        expect_error([&] { read_cloud(file); }, {"a.ply", "cut short"});
+    }
+}
+
+TEST(PcdFile, OldHeadersAreUnderstood) {
+    const fs::path file = new_folder() / "a.PCD";
+    const std::vector<Eigen::Vector3f> points = {{1.0F, 2.0F, 3.0F}, {4.0F, 5.0F, 6.0F}};
+    for (const char* header :
+         {"VERSION .6\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\n",
+          "VERSION .5\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 2\n", "COLUMNS x y z\nPOINTS 2\n"}) {
+        write_text(file, std::string(header) + "DATA ascii\n1 2 3\n4 5 6\n");
+        EXPECT_EQ(read_cloud(file).points_in_camera, points) << header;
+    }
+}
+
+TEST(TextCloud, HasAPointALine) {
+    const fs::path folder = new_folder();
+    const std::vector<Eigen::Vector3f> points = {{1.0F, 2.0F, 3.0F}, {4.0F, 5.0F, 6.5F}};
+    for (const char* text : {"1 2 3\n4 5 6.5\n", "2\n1 2 3 255 0 0\n4 5 6.5 1 1 1\n",
+                             "# by hand\nx,y,z\n1,2,3\n4,5,6.5", "1;2;3;9\r\n\r\n4;5;6.5;9\r\n"}) {
+        for (const char* name : {"a.xyz", "a.pts", "a.XYZ"}) {
+            EXPECT_EQ(read_cloud(write_text(folder / name, text)).points_in_camera, points) << text;
+        }
+    }
+    expect_error([&] { read_cloud(write_text(folder / "b.xyz", "1 2 3\nx y z\n")); }, {"b.xyz", "line 2"});
+    expect_error([&] { read_cloud(write_text(folder / "b.xyz", "1 2 3\n4 5\n")); }, {"b.xyz", "line 2"});
+    EXPECT_TRUE(read_cloud(write_text(folder / "c.xyz", "")).points_in_camera.empty());
+}
+
 TEST(PlyCloud, BadFilesAreRefused) {
     const fs::path file = new_folder() / "a.ply";
     const auto refused = [&](const std::string& text, const std::vector<std::string>& parts) {
@@ -189,7 +246,9 @@ TEST(PlyCloud, BadFilesAreRefused) {
     refused("ply\nformat ascii 1.0\nelement vertex 3\n", {"a.ply", "header does not end"});
     refused("solid\n", {"a.ply", "not a PLY"});
     refused("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n", {"a.ply", "x, y and z"});
-    refused("ply\nformat ascii 1.0\nelement vertex 1\nproperty int x\nend_header\n1\n", {"a.ply", "x must be"});
+    refused("ply\nformat ascii 1.0\nelement vertex 1\nproperty int x\nend_header\n1\n", {"a.ply", "x, y and z"});
+    refused("ply\nformat ascii 1.0\nelement vertex 1\nproperty list uchar int n\nproperty float x\nend_header\n",
+            {"a.ply", "list stands before"});
     refused(ply_header("ascii", 90'000'000) + "1 1 1 1\n", {"a.ply", "cut short"});
     refused(ply_header("ascii", 1) + "1 1 1\n", {"a.ply", "point 0"});
     refused(ply_header("ascii", 1) + "1 1 1 one\n", {"a.ply", "point 0", "one"});
@@ -198,7 +257,7 @@ TEST(PlyCloud, BadFilesAreRefused) {
 
 TEST(Clouds, AreListedByNumber) {
     const fs::path folder = new_folder();
-    expect_error([&] { list_clouds(folder); }, {folder.string(), "no .pcd or .ply"});
+    expect_error([&] { list_clouds(folder); }, {folder.string(), "no .pcd, .ply"});
     for (const char* name : {"cloud_10.pcd", "cloud_9.pcd", "cloud_009.ply", "cloud_1.pcd", "notes.txt"}) {
         write_text(folder / name, "");
     }
@@ -206,7 +265,7 @@ TEST(Clouds, AreListedByNumber) {
     std::vector<std::string> names;
     for (const fs::path& cloud : clouds) names.push_back(cloud.filename().string());
     EXPECT_EQ(names, (std::vector<std::string>{"cloud_1.pcd", "cloud_9.pcd", "cloud_009.ply", "cloud_10.pcd"}));
-    expect_error([&] { read_cloud(folder / "notes.txt"); }, {"notes.txt", "neither"});
+    expect_error([&] { read_cloud(folder / "notes.txt"); }, {"notes.txt", "is no .pcd"});
     expect_error([&] { list_clouds(folder / "none"); }, {"none"});
 }
 

@@ -36,7 +36,7 @@ TEST_P(RealSet, IsReadWhole) {
     const Frame& frame = scene.frames.back();
     EXPECT_FALSE(frame.camera_from_world);
     const DepthImage depth = load_depth(frame);
-    const Mask mask = masks.load(frame).value();
+    const Mask mask = masks.load(frame).mask.value();
     // The median depth within the mask is that of the object, whose distance the true pose says.
     std::vector<float> depths;
     for (std::size_t i = 0; i < mask.value.size(); ++i) {

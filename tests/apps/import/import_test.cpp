@@ -1,3 +1,4 @@
+#include "apps/data_set/model_diameter.hpp"
 #include "apps/import/import_frames.hpp"
 
 #include <gtest/gtest.h>

@@ -210,7 +210,7 @@ TEST(Simulate, TableFillsTheBackground) {
         simulate_block(options);
         const data_set::BopScene scene = data_set::open_scene(options.data_set / "test/000001");
         const DepthImage depth = data_set::load_depth(scene.frames[0]);
-        const Mask mask = *data_set::MaskSource(scene, 1).load(scene.frames[0]);
+        const Mask mask = *data_set::MaskSource(scene, 1).load(scene.frames[0]).mask;
         int background = 0, measured = 0;
         for (std::size_t i = 0; i < depth.depth_m.size(); ++i) {
             if (mask.value[i] != 0) continue;
