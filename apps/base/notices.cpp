@@ -6,17 +6,17 @@
 namespace nearpose::data_set {
 namespace {
 
-bool is_digit(char c) {
+bool counts_as_digit(char c) {
     return c >= '0' && c <= '9';
 }
 
 // The end of the number that begins at `begin`: 12, 0.5, 1e-05. The point of "12.png" is none of it.
 std::size_t number_end(const std::string& text, std::size_t begin) {
     std::size_t end = begin;
-    const auto digit_at = [&](std::size_t at) { return at < text.size() && is_digit(text[at]); };
+    const auto digit_at = [&](std::size_t at) { return at < text.size() && counts_as_digit(text[at]); };
     while (end < text.size()) {
         const bool signed_exponent = text[end] == 'e' && end + 1 < text.size() && text[end + 1] == '-';
-        if (!is_digit(text[end]) && !(text[end] == '.' && digit_at(end + 1)) && !signed_exponent) break;
+        if (!counts_as_digit(text[end]) && !(text[end] == '.' && digit_at(end + 1)) && !signed_exponent) break;
         end += signed_exponent ? 2 : 1;
     }
     return end;
@@ -26,7 +26,7 @@ std::size_t number_end(const std::string& text, std::size_t begin) {
 std::string matter_of(const std::string& text) {
     std::string matter;
     for (std::size_t i = 0; i < text.size();) {
-        const bool number = is_digit(text[i]);
+        const bool number = counts_as_digit(text[i]);
         matter += number ? '#' : text[i];
         i = number ? number_end(text, i) : i + 1;
     }

@@ -30,7 +30,7 @@ Reader reader_of(const std::filesystem::path& path) {
     return nullptr;
 }
 
-std::string size_text(ImageSize size) {
+std::string sides_text(ImageSize size) {
     return std::to_string(size.width) + " x " + std::to_string(size.height);
 }
 
@@ -51,7 +51,7 @@ DepthImage read_depth_file(const std::filesystem::path& path, std::optional<doub
     }
     const auto check_size = [&](ImageSize size) {
         if (size == expected) return;
-        throw std::runtime_error(path.string() + ": has " + size_text(size) + " pixels, but " + size_text(expected) +
+        throw std::runtime_error(path.string() + ": has " + sides_text(size) + " pixels, but " + sides_text(expected) +
                                  " are expected");
     };
     const NumberImage image = reader({path, true, check_size});

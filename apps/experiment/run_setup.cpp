@@ -1,10 +1,10 @@
 #include "apps/experiment/run_setup.hpp"
-#include "apps/data_set/model_diameter.hpp"
 
 #include <cmath>
 #include <numbers>
 
 #include "apps/data_set/bop_models.hpp"
+#include "apps/data_set/model_diameter.hpp"
 #include "apps/data_set/trajectory_tum.hpp"
 #include "apps/depth_sensor/sensor_file.hpp"
 #include "apps/experiment/cad_error.hpp"

@@ -30,16 +30,21 @@ void require_folder(const fs::path& folder) {
     if (!fs::is_directory(folder)) throw std::runtime_error(folder.string() + ": is not a folder");
 }
 
-// Orders by stamp and numbers the frames from 0 on.
-void order_by_stamp(std::vector<SourceImage>& images) {
-    std::sort(images.begin(), images.end(), [](const auto& a, const auto& b) { return a.stamp_s < b.stamp_s; });
+// Orders by stamp, of equal stamps by name, and numbers the frames from 0 on. What is said of equal ones; empty: none.
+std::vector<std::string> order_by_stamp(std::vector<SourceImage>& images) {
+    std::sort(images.begin(), images.end(), [](const auto& a, const auto& b) {
+        return a.stamp_s != b.stamp_s ? a.stamp_s < b.stamp_s : a.file < b.file;
+    });
+    int repeated = 0;
+    const SourceImage* first = nullptr;
     for (std::size_t i = 0; i < images.size(); ++i) {
         images[i].id = static_cast<int>(i);
-        if (i > 0 && !(images[i].stamp_s > images[i - 1].stamp_s)) {
-            throw std::runtime_error(images[i].file.string() + ": has the same stamp as " +
-                                     images[i - 1].file.string());
-        }
+        if (i == 0 || images[i].stamp_s > images[i - 1].stamp_s) continue;
+        if (++repeated == 1) first = &images[i];
     }
+    if (repeated == 0) return {};
+    return {std::to_string(repeated) + (repeated == 1 ? " image has" : " images have") +
+            " the stamp of the one before (the first: " + first->file.string() + "); were they written twice?"};
 }
 
 // The counts of one image, whatever the source's format.
@@ -90,6 +95,11 @@ ImportSummary write_scene(const fs::path& out_scene, const std::vector<SourceIma
     }
     writer.finish();
     if (!any_depth) summary.warnings.push_back("no image has a single measured pixel");
+    return summary;
+}
+
+ImportSummary with(const std::vector<std::string>& warnings, ImportSummary summary) {
+    summary.warnings.insert(summary.warnings.begin(), warnings.begin(), warnings.end());
     return summary;
 }
 
@@ -162,8 +172,8 @@ ImportSummary import_realsense_raw(const RealSenseRawImport& options) {
         throw std::runtime_error(options.raw_folder.string() +
                                  ": has no file named *_Depth_<milliseconds>.raw; export with rs-convert -d -r");
     }
-    order_by_stamp(images);
-    return write_scene(options.out_scene, images, camera, scale_mm, read_raw);
+    const std::vector<std::string> warnings = order_by_stamp(images);
+    return with(warnings, write_scene(options.out_scene, images, camera, scale_mm, read_raw));
 }
 
 ImportSummary import_open3d(const Open3dImport& options) {
@@ -209,8 +219,8 @@ ImportSummary import_tum(const TumImport& options) {
         images.push_back(tum_image(options.folder, line, list.string() + ": line " + std::to_string(number) + ": "));
     }
     if (images.empty()) throw std::runtime_error(list.string() + ": lists no image");
-    order_by_stamp(images);
-    return write_scene(options.out_scene, images, camera, scale_mm, read_png);
+    const std::vector<std::string> warnings = order_by_stamp(images);
+    return with(warnings, write_scene(options.out_scene, images, camera, scale_mm, read_png));
 }
 
 }  // namespace nearpose::data_set

@@ -1,5 +1,4 @@
 #include "apps/simulate/simulate.hpp"
-#include "apps/data_set/model_diameter.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -11,6 +10,7 @@
 #include "apps/data_set/bop_models.hpp"
 #include "apps/data_set/bop_scene.hpp"
 #include "apps/data_set/bop_writer.hpp"
+#include "apps/data_set/model_diameter.hpp"
 #include "apps/data_set/png_file.hpp"
 #include "apps/data_set/trajectory_tum.hpp"
 #include "apps/part_model/model_symmetries.hpp"

@@ -69,9 +69,8 @@ TEST(JsonFile, NumbersMayBeTextAndRows) {
 }
 
 TEST(JsonFile, ValuesAreCounted) {
-    std::string text = "[0";
-    for (int i = 1; i < kMaxJsonValues; ++i) text += ",0";
-    expect_error([&] { parsed(text + "]"); }, {"a.json", "more than 4000000 values"});
+    const std::string text(static_cast<std::size_t>(kMaxJsonValues), ',');
+    expect_error([&] { parsed("[" + text + "]"); }, {"a.json", "more than 4000000 values"});
 }
 
 TEST(JsonFile, DepthIsLimited) {

@@ -1,4 +1,3 @@
-#include "apps/data_set/model_diameter.hpp"
 #include "apps/import/import_frames.hpp"
 
 #include <gtest/gtest.h>
@@ -7,6 +6,7 @@
 
 #include "apps/data_set/bop_scene.hpp"
 #include "apps/data_set/camera_json.hpp"
+#include "apps/data_set/model_diameter.hpp"
 #include "apps/data_set/png_file.hpp"
 #include "apps/part_model/import_model.hpp"
 #include "tests/apps/support/test_files.hpp"
@@ -68,8 +68,6 @@ TEST(ImportRealSense, BadRecordingsAreRefused) {
     refused({"part_Depth_1.raw", "13 bytes", "3 x 2", "12"});
     write_text(folder / "raw" / "part_Depth_1.raw", raw_frame(1));
     refused({"depth unit"}, 0.0);
-    write_text(folder / "raw" / "part_Depth_1.0.raw", raw_frame(1));
-    refused({"same stamp"});
 }
 
 TEST(ImportRealSense, AnEmptyRecordingIsSaid) {
@@ -156,7 +154,21 @@ TEST(ImportTum, BadRecordingsAreRefused) {
     refused("1.0 ../../secret.png\n", {"line 1", "outside"});
     refused("1.0 /etc/passwd\n", {"line 1", "outside"});
     refused("1.0 none.png\n", {"none.png", "No such file"});
-    refused("1.0 a.png\n1.0 b.png\n", {"same stamp"});
+}
+
+TEST(ImportTum, ImagesWithTheSameStampAreKeptAndSaid) {
+    const fs::path folder = new_folder();
+    const fs::path camera = camera_file(folder);
+    for (const char* name : {"a.png", "b.png", "c.png"}) {
+        write_count_png(folder / name, {3, 2, std::vector<std::uint16_t>(6, 1)});
+    }
+    write_text(folder / "depth.txt", "2.0 c.png\n1.0 b.png\n1.0 a.png\n");
+    const fs::path out = folder / "set" / "test" / "000001";
+    const ImportSummary summary = import_tum({folder, camera, 5000.0, out});
+    EXPECT_EQ(summary.frames, 3);
+    ASSERT_EQ(summary.warnings.size(), 1U);
+    EXPECT_NE(summary.warnings[0].find("1 image has the stamp of the one before"), std::string::npos);
+    EXPECT_EQ(open_scene(out).frames[1].stamp_s, 1.5);  // between its neighbours'
 }
 
 TEST(ImportModel, AModelInCentimetresComesOutInMillimetres) {
