@@ -1,8 +1,10 @@
 #include "raycast/mesh_loader.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <cstdio>
 #include <stdexcept>
 #include <utility>
@@ -81,6 +83,32 @@ void require_plausible_size(const Mesh& mesh, const std::string& source, LengthU
     throw std::runtime_error(message + ": check the unit it was exported in");
 }
 
+// Far from its origin a part loses its shape: single precision, in which most files hold their numbers, has steps of a
+// ten-millionth of the distance.
+void require_precise(const Mesh& mesh, const std::string& source) {
+    constexpr double kCoarsest = 1e-3;  // steps in diameters
+    Eigen::AlignedBox3d box;
+    const auto extend = [&](const Eigen::Vector3f& vertex) {
+        if (vertex.allFinite()) box.extend(vertex.cast<double>());
+    };
+    for (const auto& triangle : mesh.triangles) {
+        for (const int corner : triangle) {
+            if (corner >= 0 && static_cast<std::size_t>(corner) < mesh.vertices_in_object.size())
+                extend(mesh.vertices_in_object[static_cast<std::size_t>(corner)]);
+        }
+    }
+    if (mesh.is_cloud()) std::for_each(mesh.vertices_in_object.begin(), mesh.vertices_in_object.end(), extend);
+    if (box.isEmpty()) return;
+    const double farthest_m = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
+    const double step_m = std::nextafter(static_cast<float>(farthest_m), INFINITY) - static_cast<float>(farthest_m);
+    const double diameter_m = box.diagonal().norm();
+    if (step_m <= kCoarsest * diameter_m) return;
+    throw std::runtime_error(source + ": the part lies " + rounded(farthest_m) +
+                             " m from its origin, where numbers of single precision are " + rounded(1e3 * step_m) +
+                             " mm apart: too coarse for a part of " + rounded(diameter_m) +
+                             " m; move it to the origin in CAD and export it again");
+}
+
 // What a reader returned in `unit`, as load_mesh gives it.
 LoadedMesh finish(Mesh raw, const std::string& source, LengthUnit unit, const MeshLimits& limits,
                   const MeshRepair& repair) {
@@ -90,6 +118,7 @@ LoadedMesh finish(Mesh raw, const std::string& source, LengthUnit unit, const Me
         const Eigen::Vector3d in_metres = vertex.cast<double>() * metres_per(unit);
         vertex = in_metres.cast<float>();
     }
+    require_precise(raw, source);
     loaded.mesh = clean(std::move(raw), source, &loaded.repair);
     require_plausible_size(loaded.mesh, source, unit, limits);
     if (is_ply_cloud) {

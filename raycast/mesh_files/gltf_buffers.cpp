@@ -52,11 +52,12 @@ std::string GltfBuffers::buffer(const JsonValue& item) {
     return out + "}";
 }
 
-void GltfBuffers::check_data_uri(std::string_view uri, std::int64_t bytes) const {
+// The same data with a plain media type: the importer takes the data to be missing where the type is long.
+std::string GltfBuffers::checked_data_uri(std::string_view uri, std::int64_t bytes) const {
     constexpr std::string_view kMarker = ";base64,";
     const std::size_t marker = uri.substr(0, 256).find(kMarker);
     if (marker == uri.npos) fields_.fail("a data uri is not in base64");
-    std::string_view data = uri.substr(marker + kMarker.size());
+    const std::string_view data = uri.substr(marker + kMarker.size());
     const std::size_t num_letters = data.find_last_not_of('=') + 1;
     const bool is_base64 =
         data.size() % 4 == 0 && data.size() - num_letters <= 2 &&
@@ -67,14 +68,12 @@ void GltfBuffers::check_data_uri(std::string_view uri, std::int64_t bytes) const
     if (decoded < static_cast<std::uint64_t>(bytes) || decoded > fields_.limits().max_file_bytes) {
         fields_.fail("a data uri is shorter than its buffer");
     }
+    return "data:application/octet-stream;base64," + std::string(data);
 }
 
 std::string GltfBuffers::checked_uri(const JsonValue& uri, std::int64_t bytes) const {
     if (uri.kind != JsonValue::Kind::kString) fields_.fail("the uri of a buffer is not a string");
-    if (uri.text.starts_with("data:")) {
-        check_data_uri(uri.text, bytes);
-        return std::string(uri.text);
-    }
+    if (uri.text.starts_with("data:")) return checked_data_uri(uri.text, bytes);
     const std::string name = file_name_of(uri.text);
     if (!is_own_file(folder_, name)) {
         fields_.fail("the buffer \"" + std::string(uri.text.substr(0, 200)) +

@@ -48,7 +48,7 @@ class GltfBuffers {
 
     // As the importer gets it: the name of a file that was checked, or data.
     std::string checked_uri(const JsonValue& uri, std::int64_t bytes) const;
-    void check_data_uri(std::string_view uri, std::int64_t bytes) const;
+    std::string checked_data_uri(std::string_view uri, std::int64_t bytes) const;
 
     const GltfFields& fields_;
     std::uint64_t binary_chunk_bytes_;

@@ -261,8 +261,8 @@ TEST_F(ConcaveFaces, ABracketHasItsAreaInEveryFormat) {
         obj += "f";
         rows += std::to_string(polygon.size());
         for (const int corner : polygon) {
-            obj += " " + std::to_string(corner + 1);
-            rows += " " + std::to_string(corner);
+            obj.append(" ").append(std::to_string(corner + 1));
+            rows.append(" ").append(std::to_string(corner));
         }
         obj += "\n";
         rows += "\n";

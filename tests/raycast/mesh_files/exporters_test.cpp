@@ -167,7 +167,7 @@ TEST_F(Exporters, OffMayHaveNormalsColoursAndAnyNumberOfCorners) {
     for (int k = 0; k < 100; ++k) {
         disc += std::to_string(100.0 * std::cos(0.02 * M_PI * k)) + " " +
                 std::to_string(100.0 * std::sin(0.02 * M_PI * k)) + " 0\n";
-        face += " " + std::to_string(k);
+        face.append(" ").append(std::to_string(k));
     }
     const Mesh mesh = load_mesh(write("d.off", disc + face + "\n"), LengthUnit::kMillimetre).mesh;
     EXPECT_EQ(mesh.triangles.size(), 98U);

@@ -84,10 +84,13 @@ TEST_F(Gltf, ReadsBuffersBesideWithinAndInTheFile) {
     within.uri += "\"";
     Parts chunk;
     chunk.uri = "";
+    Parts long_type = within;
+    long_type.uri.insert(long_type.uri.find("stream"), std::string(100, 'z'));
     write("beside.gltf", gltf({}));
     write("within.gltf", gltf(within));
+    write("long_type.gltf", gltf(long_type));
     write("chunk.GLB", glb(gltf(chunk), cube_buffer()));
-    for (const std::string name : {"beside.gltf", "within.gltf", "chunk.GLB"}) {
+    for (const std::string name : {"beside.gltf", "within.gltf", "long_type.gltf", "chunk.GLB"}) {
         const LoadedMesh loaded = load_mesh(folder_ / name, kUnit);
         EXPECT_EQ(loaded.mesh.triangles.size(), 12U) << name;
         EXPECT_EQ(loaded.mesh.vertices_in_object.size(), 8U) << name;

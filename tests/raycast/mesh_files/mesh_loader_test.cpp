@@ -208,6 +208,24 @@ TEST_F(MeshLoader, ConvertsUnitsAndNamesTheLikelyOne) {
     EXPECT_NO_THROW(load_mesh(path, LengthUnit::kMillimetre, limits));
 }
 
+TEST_F(MeshLoader, RefusesAPartSoFarFromItsOriginThatItLosesItsShape) {
+    for (const float distance_m : {0.0F, 100.0F, 1e4F, 1e6F}) {
+        Mesh part = make_box({0.03F, 0.02F, 0.05F});
+        for (Eigen::Vector3f& vertex : part.vertices_in_object) vertex += Eigen::Vector3f(distance_m, 0.0F, 0.0F);
+        const auto path = folder_ / "part.ply";
+        save_ply(part, path, LengthUnit::kMetre);
+        if (distance_m <= 100.0F) {
+            EXPECT_NEAR(extent_of(load_mesh(path, kUnit).mesh).diameter_m(), 0.1233, 1e-4);
+        } else {
+            expect_error<std::runtime_error>([&] { load_mesh(path, kUnit); }, "numbers of single precision are ");
+            expect_error<std::runtime_error>([&] { load_mesh(path, kUnit); }, "move it to the origin in CAD");
+        }
+    }
+    expect_refused("a.obj", "v 1e9 0 0\nv 1e9 0.1 0\nv 1e9 0 0.1\nf 1 2 3\n", "1e+09 m from its origin");
+    // A vertex that no triangle has does not count.
+    expect_cube("b.obj", obj_cube("") + "v 1e9 0 0\n");
+}
+
 TEST(LengthUnit, ParsesItsNames) {
     EXPECT_EQ(parse_length_unit("m"), LengthUnit::kMetre);
     EXPECT_EQ(parse_length_unit("millimetre"), LengthUnit::kMillimetre);
