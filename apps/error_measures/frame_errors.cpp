@@ -189,7 +189,7 @@ FrameErrors frame_errors(const TrueFrame& truth, const std::optional<EstimatedFr
     frame.visibility = truth.visibility;
     frame.shown = truth.shown;
     frame.part_moved = truth.part_moved;
-    frame.faulty = truth.faulty;
+    frame.after_fault = truth.after_fault;
     if (!estimate) return frame;
     frame.score = estimate->score;
     frame.time_s = estimate->time_s;

@@ -39,8 +39,8 @@ struct TrueFrame {
     Pose camera_from_object;  // but for kPart: where the part would be
     std::optional<Visibility> visibility;
     Shown shown = Shown::kPart;
-    bool part_moved = false;  // the part was put down elsewhere since the frame before
-    bool faulty = false;      // the recording has a fault in this frame
+    bool part_moved = false;   // the part was put down elsewhere since the frame before
+    bool after_fault = false;  // the recording had a fault, and has none from here on
 };
 
 struct EstimatedFrame {
@@ -85,7 +85,7 @@ struct FrameErrors {
     std::optional<Verdict> verdict;  // none: not known; a frame without a pose may have one
     Shown shown = Shown::kPart;      // where it is not the part, the errors are no errors
     bool part_moved = false;         // as in TrueFrame
-    bool faulty = false;             // as in TrueFrame; tables do not have it
+    bool after_fault = false;        // as in TrueFrame; tables do not have it
 };
 
 // `camera` is for MSPD alone.
@@ -94,8 +94,8 @@ FrameErrors frame_errors(const TrueFrame& truth, const std::optional<EstimatedFr
 
 // A CSV table, a row a frame, millimetres and degrees; what it does not know is left empty. With a tolerance a last
 // column tells which verdicts are wrong by it: false_accept, missed (verdict_counts.hpp). Reading gives back what was
-// written to the digits that were written, but for that column and for faulty, and takes tables from before there were
-// verdicts; throws std::runtime_error naming file, line and column.
+// written to the digits that were written, but for that column and for after_fault, and takes tables from before there
+// were verdicts; throws std::runtime_error naming file, line and column.
 std::string table_of(const std::vector<FrameErrors>& frames, const std::optional<Tolerance>& tolerance = std::nullopt);
 std::vector<FrameErrors> read_table(const std::filesystem::path& csv);
 

@@ -27,10 +27,9 @@ std::optional<int> return_index(const std::vector<FrameErrors>& frames) {
 }
 
 std::optional<int> end_of_fault(const std::vector<FrameErrors>& frames) {
-    const auto last =
-        std::find_if(frames.rbegin(), frames.rend(), [](const FrameErrors& frame) { return frame.faulty; });
-    if (last == frames.rend() || last == frames.rbegin()) return std::nullopt;
-    return static_cast<int>(last.base() - frames.begin());
+    const auto end =
+        std::find_if(frames.begin(), frames.end(), [](const FrameErrors& frame) { return frame.after_fault; });
+    return end == frames.end() ? std::nullopt : std::optional(static_cast<int>(end - frames.begin()));
 }
 
 }  // namespace nearpose::evaluation

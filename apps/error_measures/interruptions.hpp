@@ -19,7 +19,7 @@ std::vector<bool> excused_frames(const std::vector<FrameErrors>& frames);
 // nonsense are no absence: the part did not go. Nothing where nothing of the kind happens.
 std::optional<int> return_index(const std::vector<FrameErrors>& frames);
 
-// The first frame after the last fault of the recording; nothing where there is no fault or it lasts to the end.
+// The first frame after the recording's faults; nothing where there is no fault or one lasts to the end.
 std::optional<int> end_of_fault(const std::vector<FrameErrors>& frames);
 
 }  // namespace nearpose::evaluation

@@ -43,7 +43,7 @@ class FrameInput {
 
 evaluation::TrueFrame truth_of(const simulate::SimulatedFrame& frame, const PinholeCamera& camera) {
     evaluation::TrueFrame truth{frame.id, frame.camera_from_object, {}};
-    truth.faulty = frame.faulty;
+    truth.after_fault = frame.after_fault;
     if (!frame.shows_part()) {
         truth.shown = frame.nonsense ? evaluation::Shown::kNonsense : evaluation::Shown::kNothing;
         return truth;

@@ -238,8 +238,9 @@ SimulatedFrame Recording::frame(int index) const {
     const int id = impl_->events.delivery.ids.at(static_cast<std::size_t>(index));
     SimulatedFrame frame = impl_->frame_at(impl_->events.delivery.copy_of[static_cast<std::size_t>(id)]);
     frame.id = id;
-    frame.faulty = std::any_of(impl_->options.faults.begin(), impl_->options.faults.end(),
-                               [id](const Fault& fault) { return fault.is_in(id); });
+    const std::vector<Fault>& faults = impl_->options.faults;
+    frame.after_fault =
+        !faults.empty() && std::all_of(faults.begin(), faults.end(), [id](const Fault& f) { return f.last < id; });
     return frame;
 }
 

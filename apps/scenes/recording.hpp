@@ -79,9 +79,9 @@ struct SimulatedFrame {
     Mask silhouette;  // exact: pixels whose ray meets the part, also behind others
     // What an estimator is given: `visible` with the mask's errors; without the part, that of what is taken for it.
     Mask given_mask;
-    bool nonsense = false;    // the depth is not of the scene
-    bool part_moved = false;  // the part lies elsewhere than in the first frame
-    bool faulty = false;      // one of the recording's faults has this frame
+    bool nonsense = false;     // the depth is not of the scene
+    bool part_moved = false;   // the part lies elsewhere than in the first frame
+    bool after_fault = false;  // the recording had a fault, and has none from here on
     Pose camera_from_object;
     Pose camera_from_world;  // as the arm reports it, with its errors
     data_set::ObjectTruth truth;

@@ -56,17 +56,12 @@ TEST(Interruptions, TheReturnIsWhereThePartIsBackOrElsewhere) {
     EXPECT_EQ(return_index(frames_of("gg000")), std::nullopt);
 }
 
-TEST(Interruptions, FaultsEndWithTheLastFrameThatHasOne) {
-    const auto end = [](const std::string& faulty) {
-        std::vector<FrameErrors> frames(faulty.size());
-        for (std::size_t i = 0; i < faulty.size(); ++i) frames[i].faulty = faulty[i] == 'f';
-        return end_of_fault(frames);
-    };
-    EXPECT_EQ(end("..ff.."), 4);
-    EXPECT_EQ(end("f.f..."), 3);
-    EXPECT_EQ(end("......"), std::nullopt);
-    EXPECT_EQ(end("...fff"), std::nullopt);
-    EXPECT_EQ(end(""), std::nullopt);
+TEST(Interruptions, FaultsEndWithTheFirstFrameAfterThem) {
+    std::vector<FrameErrors> frames(5);
+    EXPECT_EQ(end_of_fault(frames), std::nullopt);
+    frames[3].after_fault = frames[4].after_fault = true;
+    EXPECT_EQ(end_of_fault(frames), 3);
+    EXPECT_EQ(end_of_fault({}), std::nullopt);
 }
 
 TEST(Interruptions, FramesToRefindCountFromTheReturn) {

@@ -76,7 +76,7 @@ TEST(VerdictCounts, RecoveryIsARightAcceptAfterTheFault) {
                                        frame_with(Verdict::kLost, 0.0), frame_with(Verdict::kAccept, 0.01),
                                        frame_with(Verdict::kAccept, 0.001)};
     EXPECT_EQ(count_verdicts(frames, kTolerance).frames_to_recover, std::nullopt);
-    frames[1].faulty = true;
+    for (std::size_t i = 2; i < frames.size(); ++i) frames[i].after_fault = true;
     EXPECT_EQ(count_verdicts(frames, kTolerance).frames_to_recover, 3);
     frames.pop_back();
     EXPECT_EQ(count_verdicts(frames, kTolerance).frames_to_recover, std::nullopt);

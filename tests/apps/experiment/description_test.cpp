@@ -188,7 +188,7 @@ TEST(Description, ShardsAreReadStrictly) {
 }
 
 TEST(Description, ShippedOnesAreGood) {
-    for (const char* name : {"small.json", "evaluation.json", "accuracy.json"}) {
+    for (const char* name : {"small.json", "evaluation.json", "accuracy.json", "faults.json"}) {
         const Description description = read_description(std::filesystem::path("apps/experiments") / name);
         EXPECT_NO_THROW(check(description)) << name;
     }

@@ -58,9 +58,11 @@ TEST(RunCells, TheMoveIsToldOnceAlsoWhereItsFrameIsDropped) {
     }
 }
 
-TEST(RunCells, FramesSayWhetherTheyHaveAFault) {
-    const CellResult run = run_with({{"fault", std::string("frozen@4-5")}, {"method", "paper"}, {"particles", 1.0}});
-    for (std::size_t i = 0; i < run.frames.size(); ++i) EXPECT_EQ(run.frames[i].faulty, i == 4 || i == 5);
+TEST(RunCells, FramesSayWhetherTheFaultIsOver) {
+    for (const char* fault : {"frozen@4-5", "dropped@4-5"}) {
+        const CellResult run = run_with({{"fault", std::string(fault)}, {"method", "paper"}, {"particles", 1.0}});
+        for (const FrameErrors& frame : run.frames) EXPECT_EQ(frame.after_fault, frame.frame_id > 5) << fault;
+    }
 }
 
 TEST(RunCells, WrittenIntrinsicsAreBelievedAndTheTruthStays) {
