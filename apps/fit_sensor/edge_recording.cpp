@@ -37,7 +37,9 @@ MeasuredEdges measure_edges(const EdgeRecording& recording, const SharedOptions&
     options.scene_id = 0;  // of no concern: the folder may have any name
     simulate::EdgeMeter meter;
     MeasuredEdges edges;
-    for (const data_set::Frame& frame : data_set::open_scene(recording.scene, options).frames) {
+    const data_set::BopScene scene = data_set::open_scene(recording.scene, options);
+    for (const data_set::Notice& notice : scene.notices.all()) print_notice(to_text(notice), shared.quiet);
+    for (const data_set::Frame& frame : scene.frames) {
         const auto pose = truth.find(frame.id);
         if (pose == truth.end()) continue;
         try {

@@ -39,13 +39,15 @@ struct Recording {
     int unread = 0;
 };
 
-Recording read_recording(const FitSensorOptions& command) {
+Recording read_recording(const FitSensorOptions& command, const SharedOptions& shared) {
     data_set::SceneOptions options;
     options.scene_id = 0;  // of no concern: the folder may have any name
     options.first_frame = command.first;
     options.last_frame = command.last;
     Recording recording;
-    for (const data_set::Frame& frame : data_set::open_scene(command.scene, options).frames) {
+    const data_set::BopScene scene = data_set::open_scene(command.scene, options);
+    for (const data_set::Notice& notice : scene.notices.all()) print_notice(to_text(notice), shared.quiet);
+    for (const data_set::Frame& frame : scene.frames) {
         recording.depth_scale_mm = std::max(recording.depth_scale_mm, frame.depth_scale_mm);
         try {
             recording.frames.push_back({frame.id, frame.camera, data_set::load_depth(frame)});
@@ -211,7 +213,7 @@ int fit_sensor(const FitSensorOptions& command, const SharedOptions& shared) {
                      ": must be a sensor of simple noise, which alone is fitted; the window of " +
                      section_of(*base.stereo) + " is found by comparing edge growth with that of its simulation");
     const std::optional<MeasuredEdges> edges = edges_of(command, shared);
-    const Recording recording = read_recording(command);
+    const Recording recording = read_recording(command, shared);
     simulate::SensorFitOptions options;
     options.region = region_of(command, recording.frames.front().camera);
     const SensorFit fit = simulate::fit_sensor(recording.frames, base.noise, 1e-3 * recording.depth_scale_mm, options);

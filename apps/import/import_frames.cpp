@@ -10,6 +10,7 @@
 #include "apps/data_set/bop_scene.hpp"
 #include "apps/data_set/bop_writer.hpp"
 #include "apps/data_set/camera_json.hpp"
+#include "apps/data_set/image_files.hpp"
 #include "apps/data_set/png_file.hpp"
 #include "apps/import/import_frames.hpp"
 
@@ -189,7 +190,7 @@ ImportSummary import_open3d(const Open3dImport& options) {
     for (const fs::directory_entry& entry : fs::directory_iterator(options.folder / "depth")) {
         const auto number = parse_integer(entry.path().stem().string());
         const bool fits = number && *number >= 0 && *number <= std::numeric_limits<int>::max();
-        if (entry.path().extension() != ".png" || !fits) continue;
+        if (lower_extension(entry.path()) != ".png" || !fits) continue;
         const double stamp_s = static_cast<double>(*number) / options.frames_per_second;
         images.push_back({entry.path(), static_cast<int>(*number), stamp_s});
     }

@@ -165,5 +165,27 @@ TEST_F(DepthFile, OfExrIsTheChannelZ) {
     expect_refused(good.substr(0, 60), {"depth", "EXR"});
 }
 
+// Whatever a byte is changed to, or where the file ends: an image of the size that is asked for, or an error.
+TEST_F(DepthFile, ThatIsDamagedNeverCrashes) {
+    for (const std::string& good : {npy("<u2", "(2, 3)", bytes_of(kCounts)), npy("<f4", "(2, 3)", bytes_of(kMetres)),
+                                    tiff(3, 2, 16, 1, bytes_of(kCounts)), exr(3, 2, {"Z"}, kMetres)}) {
+        const auto read = [&](const std::string& bytes) {
+            write_text(file_, bytes);
+            try {
+                EXPECT_EQ(read_depth_file(file_, 1.0, {3, 2}).depth_m.size(), 6U);
+            } catch (const std::runtime_error&) {
+            }
+        };
+        for (std::size_t at = 0; at < good.size(); ++at) {
+            for (const int change : {0x01, 0xff}) {
+                std::string damaged = good;
+                damaged[at] = static_cast<char>(damaged[at] ^ change);
+                read(damaged);
+            }
+            if (at % 4 == 0) read(good.substr(0, at));
+        }
+    }
+}
+
 }  // namespace
 }  // namespace nearpose::data_set

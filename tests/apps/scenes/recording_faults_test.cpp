@@ -81,7 +81,8 @@ TEST(RecordingFaults, DepthIsScaledBeforeItIsCounted) {
 TEST(RecordingFaults, DepthBeyondTheCountsIsNone) {
     RecordingOptions options = with({"depth-scale:900@all"}, 1);
     options.depth_scale_mm = 0.1;
-    for (const float value_m : frames_of(options)[0].depth.depth_m) EXPECT_LE(value_m, 6.5536F);
+    const Frames frames = frames_of(options);
+    for (const float value_m : frames[0].depth.depth_m) EXPECT_LE(value_m, 6.5536F);
 }
 
 TEST(RecordingFaults, FilteredFramesDoNotDependOnTheOrderInWhichTheyAreAskedFor) {
