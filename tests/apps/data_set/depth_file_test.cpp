@@ -177,12 +177,10 @@ TEST_F(DepthFile, ThatIsDamagedNeverCrashes) {
             }
         };
         for (std::size_t at = 0; at < good.size(); ++at) {
-            for (const int change : {0x01, 0xff}) {
-                std::string damaged = good;
-                damaged[at] = static_cast<char>(damaged[at] ^ change);
-                read(damaged);
-            }
-            if (at % 4 == 0) read(good.substr(0, at));
+            std::string damaged = good;
+            damaged[at] = static_cast<char>(damaged[at] ^ (at % 2 == 0 ? 0x01 : 0xff));
+            read(damaged);
+            if (at % 8 == 0) read(good.substr(0, at));
         }
     }
 }
