@@ -16,6 +16,7 @@
 #include "apps/data_set/result_csv.hpp"
 #include "apps/estimate/estimate_options.hpp"
 #include "apps/estimate/estimate_outputs.hpp"
+#include "apps/estimate/unit_check.hpp"
 #include "apps/estimate/verdict_summary.hpp"
 #include "apps/part_model/model_symmetries.hpp"
 #include "apps/runs/estimator_setup.hpp"
@@ -27,9 +28,12 @@ namespace nearpose::program {
 namespace {
 
 struct Tally {
+    explicit Tally(UnitCheck check) : unit(std::move(check)) {}
+
     int frames = 0, unread = 0, seen = 0;
     std::vector<JudgedFrame> judged;
     data_set::Notices errors, notices;  // what has been said of frames: each matter once
+    UnitCheck unit;
 };
 
 JudgedFrame judged(int frame_id, const UpdateResult& result) {
@@ -203,6 +207,9 @@ void run_frame(const RunContext& run, std::size_t index, PoseEstimator& estimato
     }
     if (result.status == UpdateStatus::kEstimated) ++tally.seen;
     tally.judged.push_back(judged(frame.id, result));
+    const bool is_last = index + 1 == run.source.frames().size();
+    if (const auto notice = tally.unit.after(observation, result.verdict, is_last))
+        print_notice(*notice, run.shared.quiet);
     outputs.append(frame, report, observation, result, estimator.particles());
 }
 
@@ -260,7 +267,7 @@ int estimate(const EstimateOptions& given, const SharedOptions& shared) {
         print_notice(*notice, shared.quiet);
     }
 
-    Tally tally;
+    Tally tally(UnitCheck(options.model, extent_of(mesh).diameter_m()));
     Progress progress("estimate", static_cast<int>(source->frames().size()), shared.quiet);
     for (std::size_t index = 0; index < source->frames().size() && !interrupted(); ++index) {
         run_frame({options, shared, *source, mesh}, index, estimator, outputs, tally);

@@ -35,6 +35,7 @@ void check(const ImportOptions& options) {
         throw BadUse("--camera is needed: such recordings do not hold the depth stream's intrinsics");
     }
     if (!needs_camera && !options.camera.empty()) throw BadUse("--camera is not used with this input");
+    if (options.model.model.empty() && options.model.keep_largest) throw BadUse("--keep-largest belongs to --model");
     if (options.model.model.empty() && (options.no_symmetries || options.symmetry_resolution_mm)) {
         throw BadUse("--no-symmetries and --symmetry-resolution-mm belong to --model");
     }
@@ -62,6 +63,7 @@ int import_bop_model(const ImportOptions& options, const SharedOptions& shared) 
     import.unit = model_unit(options.model);
     import.object_id = options.id;
     import.models_folder = options.out;
+    import.keep_largest = options.model.keep_largest;
     import.find_symmetries = !options.no_symmetries;
     if (options.symmetry_resolution_mm) import.symmetry_resolution_m = 1e-3 * *options.symmetry_resolution_mm;
     const data_set::ModelImportSummary summary = data_set::import_model(import);

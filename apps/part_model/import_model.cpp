@@ -1,34 +1,21 @@
 #include "apps/part_model/import_model.hpp"
 
 #include <stdexcept>
+#include <utility>
 
 #include "apps/base/file_io.hpp"
 #include "apps/base/number_text.hpp"
 #include "apps/data_set/model_diameter.hpp"
+#include "apps/part_model/checked_model.hpp"
 #include "apps/part_model/model_symmetries.hpp"
 
 namespace nearpose::data_set {
-namespace {
-
-std::vector<std::string> repair_warnings(const MeshRepair& repair) {
-    std::vector<std::string> warnings;
-    const auto warn = [&](std::int64_t count, const std::string& what) {
-        if (count > 0) warnings.push_back(std::to_string(count) + " " + what + " left out");
-    };
-    warn(repair.triangles_degenerate, "triangles without area");
-    warn(repair.triangles_not_finite, "triangles with a corner that is not finite");
-    warn(repair.triangles_bad_index, "triangles with a corner that does not exist");
-    warn(repair.vertices_not_finite, "vertices that are not finite");
-    return warnings;
-}
-
-}  // namespace
 
 ModelImportSummary import_model(const ModelImport& options) {
     if (options.object_id < 0) {
         throw std::invalid_argument("object id is " + std::to_string(options.object_id) + ", but must not be negative");
     }
-    const LoadedMesh loaded = load_mesh(options.model, options.unit);
+    program::CheckedModel loaded = program::load_checked_model(options.model, options.unit, options.keep_largest);
     create_folder(options.models_folder);
     const std::filesystem::path info_file = options.models_folder / "models_info.json";
     std::map<int, ModelInfo> models;
@@ -44,7 +31,7 @@ ModelImportSummary import_model(const ModelImport& options) {
         program::declare(summary.symmetries, summary.info);
     }
     summary.file = options.models_folder / ("obj_" + zero_padded(options.object_id) + ".ply");
-    summary.warnings = repair_warnings(loaded.repair);
+    summary.warnings = std::move(loaded.notices);
     save_ply(loaded.mesh, summary.file, LengthUnit::kMillimetre);
     models[options.object_id] = summary.info;
     write_models_info(info_file, models);

@@ -19,6 +19,7 @@ struct ModelImport {
     std::filesystem::path models_folder;
     bool find_symmetries = true;
     std::optional<double> symmetry_resolution_m = std::nullopt;  // see program::find_symmetries
+    bool keep_largest = false;                                   // see program::load_checked_model
 };
 
 struct ModelImportSummary {

@@ -4,29 +4,15 @@
 
 #include "apps/base/console.hpp"
 #include "apps/data_set/bop_models.hpp"
+#include "apps/part_model/checked_model.hpp"
 
 namespace nearpose::program {
-namespace {
-
-// What was left out of a mesh, for the user; empty where it was nothing.
-std::string left_out(const MeshRepair& repair) {
-    std::string text;
-    const auto add = [&](std::int64_t count, const char* what) {
-        if (count > 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + what;
-    };
-    add(repair.triangles_degenerate, "triangles without area");
-    add(repair.triangles_not_finite, "triangles with NaN corners");
-    add(repair.triangles_bad_index, "triangles with corners that do not exist");
-    add(repair.vertices_not_finite, "vertices that are not finite");
-    return text;
-}
-
-}  // namespace
-
 void add_model_file_options(CLI::App& command, ModelOptions& options) {
     command.add_option("--model", options.model, "Model: PLY (mesh or dense point cloud), STL, OBJ, OFF, glTF, GLB");
     command.add_option("--unit", options.unit, "Unit of --model: m, mm, cm or in [mm; m for glTF]")
         ->check(CLI::IsMember({"m", "mm", "cm", "in"}));
+    command.add_flag("--keep-largest", options.keep_largest,
+                     "Leave out pieces of the model that lie apart from the largest, and a floor under it");
 }
 
 void add_bop_model_options(CLI::App& command, ModelOptions& options) {
@@ -61,11 +47,9 @@ LengthUnit model_unit(const ModelOptions& options) {
 }
 
 Mesh load_model(const ModelOptions& options, const SharedOptions& shared) {
-    const std::filesystem::path file = model_file(options);
-    LoadedMesh loaded = load_mesh(file, model_unit(options));
-    const std::string repair = left_out(loaded.repair);
-    if (!repair.empty()) print_notice(file.string() + ": left out " + repair, shared.quiet);
-    return std::move(loaded.mesh);
+    CheckedModel model = load_checked_model(model_file(options), model_unit(options), options.keep_largest);
+    for (const std::string& notice : model.notices) print_notice(notice, shared.quiet);
+    return std::move(model.mesh);
 }
 
 }  // namespace nearpose::program

@@ -15,9 +15,10 @@ struct ModelOptions {
     int object = 1;
     std::filesystem::path model;  // a file; instead of `models`
     std::string unit;             // of that file: m, mm, cm, in; empty: mm, or m for glTF
+    bool keep_largest = false;    // see load_checked_model
 };
 
-// --model FILE and --unit UNIT.
+// --model FILE, --unit UNIT and --keep-largest.
 void add_model_file_options(CLI::App& command, ModelOptions& options);
 // --models DIR and --object ID.
 void add_bop_model_options(CLI::App& command, ModelOptions& options);
@@ -29,7 +30,7 @@ std::filesystem::path model_file(const ModelOptions& options);
 // The unit that the options say, or the usual one of the format.
 LengthUnit model_unit(const ModelOptions& options);
 
-// Loads it, with notices about what had to be left out. Throws std::runtime_error naming the file.
+// Loads it, with notices about what is wrong with it. Throws std::runtime_error naming the file.
 Mesh load_model(const ModelOptions& options, const SharedOptions& shared);
 
 }  // namespace nearpose::program

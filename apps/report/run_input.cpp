@@ -2,7 +2,7 @@
 
 #include "apps/data_set/bop_ground_truth.hpp"
 #include "apps/data_set/result_csv.hpp"
-#include "raycast/mesh_loader.hpp"
+#include "apps/part_model/checked_model.hpp"
 
 namespace nearpose::report {
 namespace {
@@ -88,7 +88,9 @@ RunInput read_run(const std::filesystem::path& folder, const RunReportOptions& o
     if (!estimate.scene_id) estimate.scene_id = input.record.scene_id;  // whatever its folder is called now
     input.source = open_source(estimate);
     input.frame_in_source = match_frames(input, log);
-    input.mesh = load_mesh(model_file(estimate.model), model_unit(estimate.model)).mesh;
+    input.mesh =
+        program::load_checked_model(model_file(estimate.model), model_unit(estimate.model), estimate.model.keep_largest)
+            .mesh;
     if (const auto& models = estimate.model.models;
         !models.empty() && std::filesystem::exists(models / "models_info.json")) {
         input.model_info = data_set::read_model_info(models, estimate.model.object);

@@ -36,6 +36,7 @@ Json options_json(const EstimateOptions& options) {
             {"object", options.model.object},
             {"model", path_json(options.model.model)},
             {"unit", text_json(options.model.unit)},
+            {"keep-largest", options.model.keep_largest},
             {"no-mask", options.no_mask},
             {"mask-first-frame", options.mask_first_frame},
             {"mask-index", number_json(options.mask_index)},
@@ -101,6 +102,7 @@ EstimateOptions options_of(const JsonValue& json) {
     options.model.object = json.at("object").integer();
     options.model.model = text_of(json, "model");
     options.model.unit = text_of(json, "unit");
+    options.model.keep_largest = flag_of(json, "keep-largest");
     options.no_mask = flag_of(json, "no-mask");
     options.mask_first_frame = flag_of(json, "mask-first-frame");
     options.mask_index = integer_of(json, "mask-index");
