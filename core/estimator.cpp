@@ -10,6 +10,7 @@
 #include "core/update/move_particles.hpp"
 #include "core/update/predict.hpp"
 #include "core/update/refine.hpp"
+#include "core/update/repeated_image.hpp"
 #include "core/update/search.hpp"
 #include "core/update/situation.hpp"
 
@@ -62,6 +63,9 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
     const Method& method = options_.method;
     const Frame frame{*model_, *solver_, options_, observation, measured(now_from_before), belief_.step + 1};
     Ledger ledger(budget_);
+    const ImageMemory image =
+        seen_again(belief_.image, observation, frame.now_from_before, options_.method.repeated_image);
+    if (image.repeats > 0) return take_prediction(image, frame);
     UpdateResult result = nothing_seen(observation);
     std::optional<JointFit> fit;
     bool seen = false;
@@ -94,6 +98,17 @@ UpdateResult PoseEstimator::update(const Observation& observation, const std::op
     belief.lock = after_assessment(belief.lock, assessment, method);
 
     // All state is written here: an update that throws leaves no trace.
+    belief.image = image;
+    budget_ = ledger.close(result);
+    belief_ = std::move(belief);
+    return result;
+}
+
+UpdateResult PoseEstimator::take_prediction(const ImageMemory& image, const Frame& frame) {
+    Ledger ledger(budget_);
+    Belief belief = predict(belief_, frame, ledger);
+    belief.image = image;
+    UpdateResult result = predicted_alone(belief, frame);
     budget_ = ledger.close(result);
     belief_ = std::move(belief);
     return result;

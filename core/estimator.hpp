@@ -8,6 +8,7 @@
 #include "core/pose_solver.hpp"
 #include "core/result.hpp"
 #include "core/update/belief.hpp"
+#include "core/update/frame.hpp"
 #include "core/update/object_model.hpp"
 #include "core/update/time_budget.hpp"
 #include "core/view_generator.hpp"
@@ -43,6 +44,9 @@ class PoseEstimator {
     const ParticleSet& particles() const { return belief_.particles; }
 
   private:
+    // For an image that is the one before: nothing new was observed.
+    UpdateResult take_prediction(const ImageMemory& image, const Frame& frame);
+
     std::shared_ptr<const ObjectModel> model_;
     std::shared_ptr<const PoseSolver> solver_;
     EstimatorOptions options_;

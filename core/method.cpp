@@ -17,6 +17,7 @@ Method method_paper() {
     method.step.rounds = 3;
     method.step.max_rays = 64 * 48;
     method.cost = Cost::kOverlapMse;
+    method.repeated_image.on = false;
     return method;
 }
 
@@ -141,6 +142,8 @@ void validate(const Method& method) {
     validate(method.track);
     validate(method.background);
     validate(method.presence);
+    validate(method.repeated_image);
+    validate(method.arm_check);
     validate(method.verification);
     validate(method.relocalisation);
     validate(method.effort);

@@ -9,8 +9,10 @@
 #include "core/filter/gradient_step.hpp"
 #include "core/fit/joint_fit.hpp"
 #include "core/fit/track.hpp"
+#include "core/observation/image_sample.hpp"
 #include "core/search/search_options.hpp"
 #include "core/shape/modes.hpp"
+#include "core/world/arm_check.hpp"
 
 namespace nearpose {
 
@@ -141,6 +143,8 @@ struct Method {
     TrackOptions track;
     BackgroundOptions background;
     PresenceOptions presence;
+    RepeatedImageOptions repeated_image;
+    ArmCheckOptions arm_check;
     VerificationOptions verification;
     RelocalisationOptions relocalisation;
     AdaptiveEffort effort;

@@ -9,6 +9,7 @@
 #include "core/evidence/verdict.hpp"
 #include "core/filter/gradient_step.hpp"
 #include "core/shape/modes.hpp"
+#include "core/world/arm_check.hpp"
 
 namespace nearpose {
 
@@ -47,6 +48,7 @@ struct UpdateResult {
     PixelCost pixels;                        // how the estimate's rays compare with the depth image
     PositiveEvidence positive_evidence;      // what the image shows of the model beyond planes
     double log_odds_present = 0.0;           // that the object is there, with the frames before [nats]
+    ArmFindings arm;                         // whether the images move as the arm says
     Effort effort;
     double effective_sample_size = 0.0;  // 1..number of particles, after weighting
     bool resampled = false;              // before this update's propagation

@@ -88,6 +88,23 @@ Json evidence_of(const PositiveEvidence& evidence) {
             {"free_space", evidence.free_space}, {"coplanar", evidence.coplanar}, {"total", evidence.total()}};
 }
 
+// Whether the images move as the arm says, and what explains it better that the part seems to move.
+Json arm_of(const ArmFindings& arm) {
+    Json causes = Json::object();
+    for (std::size_t k = 0; k < arm.world.evidence.size(); ++k) {
+        const CauseEvidence& evidence = arm.world.evidence[k];
+        causes[to_string(static_cast<Cause>(k))] = {
+            {"log_odds", evidence.log_odds}, {"shift_m", evidence.shift_m}, {"sigma_m", evidence.sigma_m}};
+    }
+    return {{"pairs", arm.motion.pairs},
+            {"off_share", arm.motion.off_share},
+            {"moves", to_string(arm.motion.mistake)},
+            {"sightings", arm.world.sightings},
+            {"cause", to_string(arm.world.cause)},
+            {"error_bound_m", arm.world.error_bound_m},
+            {"causes", causes}};
+}
+
 // Of one observation, largest standard deviation first; a turn counts with the way of a point at half the diameter.
 Json observability_of(const Observability& observability) {
     Json sigmas = Json::array();
@@ -190,6 +207,7 @@ std::string frame_log_line(const FrameReport& frame, const UpdateResult& result)
         line["positive_evidence"] = evidence_of(result.positive_evidence);
         line["observability"] = observability_of(result.observability);
         line["cost"] = result.cost;
+        line["arm"] = arm_of(result.arm);
     }
     line["effective_sample_size"] = result.effective_sample_size;
     line["effort"] = effort_of(result.effort);

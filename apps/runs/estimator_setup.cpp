@@ -37,9 +37,9 @@ const std::vector<std::string>& residual_names() {
 }
 
 const std::vector<std::string>& parts_of_method() {
-    static const std::vector<std::string> names = {"nothing",   "fine_fit", "outline",      "depths", "pairs",
-                                                   "shortlist", "rivals",   "confidence",   "doubts", "economy",
-                                                   "presence",  "memory",   "shared_errors"};
+    static const std::vector<std::string> names = {
+        "nothing", "fine_fit", "outline",  "depths", "pairs",         "shortlist", "rivals",        "confidence",
+        "doubts",  "economy",  "presence", "memory", "shared_errors", "arm_check", "repeated_image"};
     return names;
 }
 
@@ -68,7 +68,7 @@ void leave_out(const std::string& part, Method& method) {
     if (std::find(parts.begin(), parts.end(), part) == parts.end())
         throw std::invalid_argument("without '" + part +
                                     "': take nothing, fine_fit, outline, depths, pairs, shortlist, rivals, confidence, "
-                                    "doubts, economy, presence, memory or shared_errors");
+                                    "doubts, economy, presence, memory, shared_errors, arm_check or repeated_image");
     if (part != "nothing" && method.hypotheses.modes == 0)
         throw std::invalid_argument("without " + part + ": only the default method has it");
     if (part == "fine_fit") method.fusion = false;
@@ -83,6 +83,8 @@ void leave_out(const std::string& part, Method& method) {
     }
     if (part == "memory") method.choice.log_odds_kept = method.choice.log_odds_kept_unmeasured = 0.0;
     if (part == "shared_errors") method.verification.shared_errors_allowed = 0.0;
+    if (part == "arm_check") method.arm_check.on = false;
+    if (part == "repeated_image") method.repeated_image.on = false;
     if (part == "confidence") method.choice.accepted_evidence = false;
     if (part == "doubts") method.relocalisation.low_agreement = false;
     if (part == "economy") method.effort.on = false;

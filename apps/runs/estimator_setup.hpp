@@ -43,6 +43,8 @@ const std::vector<std::string>& residual_names();
 //   presence    planes are no null hypothesis: neither for the choice of a mode nor for the verdict
 //   memory      alternatives are judged by each image alone
 //   shared_errors  the verdict's agreement allows for no errors that neighbouring rays share
+//   arm_check   images are not held against the arm's motion
+//   repeated_image  an image that is the one before is taken for a new one
 const std::vector<std::string>& parts_of_method();
 
 struct EstimatorSetup {

@@ -40,6 +40,15 @@ Words words_for(Requirement requirement) {
         case Requirement::kAlternatives:
             return {"a clear lead over another pose",
                     "show a detail that tells them apart, or give --initial-pose; declare symmetries"};
+        case Requirement::kNewImage:
+            return {"a new image", "the camera repeats its image: check its driver and its cable"};
+        case Requirement::kStands:
+            return {"a part that stands", "wait some frames; where nobody moves the part, check the arm's motion"};
+        case Requirement::kArmMotion:
+            return {"images that move as the arm says",
+                    "check the camera's mounting and the poses given with the frames"};
+        case Requirement::kSetup:
+            return {"a set-up that agrees with the images", "check intrinsics, depth scale and hand-eye calibration"};
         case Requirement::kTranslation:
             return {"precision of the position", "go nearer, look from another side, or widen --tolerance-mm"};
         case Requirement::kRotation:

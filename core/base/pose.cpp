@@ -96,6 +96,22 @@ Pose perturb_about(const Pose& pose, const Twist& twist, const Eigen::Vector3d& 
     return pose * about_centre;
 }
 
+Twist twist_about(const Pose& from, const Pose& to, const Eigen::Vector3d& centre_in_object) {
+    Twist twist;
+    twist.head<3>() = log(Pose{from.rotation.conjugate() * to.rotation, Eigen::Vector3d::Zero()}).head<3>();
+    twist.tail<3>() = from.rotation.conjugate() * (to * centre_in_object - from * centre_in_object);
+    return twist;
+}
+
+Matrix6d from_camera_twist(const Pose& camera_from_object, const Eigen::Vector3d& centre_in_object) {
+    const Eigen::Matrix3d object_from_camera = camera_from_object.rotation_matrix().transpose();
+    Matrix6d map = Matrix6d::Zero();
+    map.topLeftCorner<3, 3>() = object_from_camera;
+    map.bottomLeftCorner<3, 3>() = -object_from_camera * skew(camera_from_object * centre_in_object);
+    map.bottomRightCorner<3, 3>() = object_from_camera;
+    return map;
+}
+
 bool is_valid(const Pose& pose, double max_translation_m) {
     return pose.rotation.coeffs().allFinite() && pose.translation.allFinite() &&
            std::abs(pose.rotation.norm() - 1.0) < 1e-6 && pose.translation.norm() < max_translation_m;

@@ -49,6 +49,12 @@ double angle_between(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b);
 // the twist's translation, both in object axes. A turn about a far origin would move the object by the lever arm.
 Pose perturb_about(const Pose& pose, const Twist& twist, const Eigen::Vector3d& centre_in_object);
 
+// The inverse of perturb_about: the twist about the centre, in object axes, that takes `from` to `to`.
+Twist twist_about(const Pose& from, const Pose& to, const Eigen::Vector3d& centre_in_object);
+
+// Maps a small motion of the object in camera axes, about the camera, to the twist about its centre in object axes.
+Matrix6d from_camera_twist(const Pose& camera_from_object, const Eigen::Vector3d& centre_in_object);
+
 // True if every number is finite, the quaternion is of unit length and the translation shorter than
 // `max_translation_m`. A pose from outside is checked with this before it meets a ray caster: a NaN ray ends the
 // process.

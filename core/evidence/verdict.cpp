@@ -40,6 +40,14 @@ const char* to_string(Requirement requirement) {
             return "alternatives_tried";
         case Requirement::kAlternatives:
             return "alternatives";
+        case Requirement::kNewImage:
+            return "new_image";
+        case Requirement::kStands:
+            return "stands";
+        case Requirement::kArmMotion:
+            return "arm_motion";
+        case Requirement::kSetup:
+            return "setup";
         case Requirement::kTranslation:
             return "translation";
         case Requirement::kRotation:
@@ -61,18 +69,46 @@ int decimals_for(double value, double limit, int usual) {
     return usual + 3;
 }
 
+// "0.93", with its unit.
+std::string figure_of(const Shortfall& shortfall, double unit, int usual_decimals, const char* name) {
+    return fixed_text(unit * shortfall.value,
+                      decimals_for(unit * shortfall.value, unit * shortfall.limit, usual_decimals)) +
+           name;
+}
+
+// ", wanted 0.93", with its unit.
+std::string wanted_of(const Shortfall& shortfall, double unit, int usual_decimals, const char* name) {
+    return ", wanted " +
+           fixed_text(unit * shortfall.limit,
+                      decimals_for(unit * shortfall.value, unit * shortfall.limit, usual_decimals)) +
+           name;
+}
+
+constexpr double kMillimetres = 1e3, kDegrees = 57.295779513082321;
+
+// What image and arm together say against the pose.
+std::string describe_contradiction(const Shortfall& shortfall) {
+    if (shortfall.requirement == Requirement::kNewImage)
+        return "the image has not changed for " + figure_of(shortfall, 1.0, 0, " frames") +
+               (shortfall.which.empty() ? "" : " while the camera moved by " + shortfall.which);
+    if (shortfall.requirement == Requirement::kStands)
+        return "image and arm contradict each other: the part was moved, or the set-up is at fault; " +
+               figure_of(shortfall, 1.0, 0, " frames ago") + wanted_of(shortfall, 1.0, 0, "");
+    if (shortfall.requirement == Requirement::kArmMotion)
+        return "the image moves " + shortfall.which + ": the arm's motion is off by " +
+               figure_of(shortfall, 1.0, 2, " of itself") + wanted_of(shortfall, 1.0, 2, " at most");
+    return "the part seems to move with the camera, by the " + shortfall.which + ": up to " +
+           figure_of(shortfall, kMillimetres, 1, " mm here") + wanted_of(shortfall, kMillimetres, 1, " mm at most");
+}
+
 }  // namespace
 
 std::string describe(const Shortfall& shortfall) {
-    constexpr double kMillimetres = 1e3, kDegrees = 57.295779513082321;
-    const auto text = [&](double number, double unit, int usual) {
-        return fixed_text(unit * number, decimals_for(unit * shortfall.value, unit * shortfall.limit, usual));
-    };
     const auto figures = [&](double unit, int decimals, const char* name) {
-        return text(shortfall.value, unit, decimals) + name;
+        return figure_of(shortfall, unit, decimals, name);
     };
     const auto wanted = [&](double unit, int decimals, const char* name) {
-        return ", wanted " + text(shortfall.limit, unit, decimals) + name;
+        return wanted_of(shortfall, unit, decimals, name);
     };
     switch (shortfall.requirement) {
         case Requirement::kSeen:
@@ -94,6 +130,11 @@ std::string describe(const Shortfall& shortfall) {
             return "another pose explains the image as well: " +
                    (shortfall.which.empty() ? "" : shortfall.which + ", ") + figures(1.0, 2, " of the probability") +
                    wanted(1.0, 2, " at most");
+        case Requirement::kNewImage:
+        case Requirement::kStands:
+        case Requirement::kArmMotion:
+        case Requirement::kSetup:
+            return describe_contradiction(shortfall);
         case Requirement::kTranslation:
             return "precision: " + figures(kMillimetres, 1, " mm along ") + shortfall.which +
                    wanted(kMillimetres, 1, " mm");
@@ -152,6 +193,23 @@ std::vector<Shortfall> missing_to_verify(const Evidence& evidence, const Verific
     return missing;
 }
 
+// What image and arm together say against acting on the pose. It is no evidence against the pose in the image.
+std::vector<Shortfall> contradictions_to_arm(const Evidence& evidence, const Tolerance& tolerance,
+                                             const VerificationOptions& options) {
+    std::vector<Shortfall> missing;
+    if (evidence.frames_since_move < options.min_frames_since_move)
+        missing.push_back({Requirement::kStands,
+                           static_cast<double>(evidence.frames_since_move),
+                           static_cast<double>(options.min_frames_since_move),
+                           {}});
+    if (!(evidence.motion_off_share <= options.max_motion_off_share))
+        missing.push_back({Requirement::kArmMotion, evidence.motion_off_share, options.max_motion_off_share,
+                           evidence.motion_mistake});
+    if (!(evidence.setup_error_m <= tolerance.translation_m))
+        missing.push_back({Requirement::kSetup, evidence.setup_error_m, tolerance.translation_m, evidence.setup_cause});
+    return missing;
+}
+
 }  // namespace
 
 void validate(const VerificationOptions& options) {
@@ -163,6 +221,8 @@ void validate(const VerificationOptions& options) {
     check_option("verification.max_coplanar_share", options.max_coplanar_share, 0.0, 1.0);
     check_option("verification.max_alternatives_weight", options.max_alternatives_weight, 0.0, 1.0);
     check_option("verification.shared_errors_allowed", options.shared_errors_allowed, 0.0, 100.0);
+    check_option("verification.min_frames_since_move", options.min_frames_since_move, 0, 1000);
+    check_option("verification.max_motion_off_share", options.max_motion_off_share, 0.0, 1e6);
     check_option("verification.contradicted_below", options.contradicted_below, 0.0, 1.0);
     check_option("verification.lost_below", options.lost_below, 0.0, 1.0);
 }
@@ -176,6 +236,8 @@ Judgement judge(const Evidence& evidence, const Tolerance& tolerance, const Symm
         evidence.log_odds_present < options.lost_below_log_odds)
         return judgement;
     const Matrix6d& covariance = evidence.covariance_about_centre;
+    const std::vector<Shortfall> contradictions = contradictions_to_arm(evidence, tolerance, options);
+    judgement.missing.insert(judgement.missing.end(), contradictions.begin(), contradictions.end());
     const Spread slide = largest_spread(covariance.bottomRightCorner<3, 3>());
     const Spread turn = largest_spread(rotation_that_shows(covariance, symmetries));
     if (!(slide.radius <= tolerance.translation_m))

@@ -34,6 +34,13 @@ struct Evidence {
     bool alternatives_tried = false;                      // since the estimate's mode was last replaced
     std::string alternative;                              // the likeliest of them, in words; empty: not known
     Matrix6d covariance_about_centre = Matrix6d::Zero();  // of the twist in object axes, rotation first
+    int frames_since_move = kNeverMoved;                  // since the image last contradicted the arm's motion
+    double motion_off_share = 0.0;  // of the arm's motion, where a mistake in it explains the images; else 0
+    std::string motion_mistake;     // in words
+    double setup_error_m = 0.0;     // that the set-up may cause, where the part seems to move by it
+    std::string setup_cause;        // in words
+
+    static constexpr int kNeverMoved = 1 << 20;
 };
 
 // Bounds between verified, contradicted and lost. All are shares in 0..1; agreement, support, overlap and coplanar
@@ -49,6 +56,9 @@ struct VerificationOptions {
     // In the agreement, residuals may be larger than the noise by so many of what the joint fit finds neighbouring rays
     // to be off together. Without it 30 instead of 100 % of a real sequence with a rough CAD are accepted.
     double shared_errors_allowed = 1.0;
+    // Frames before a part that was moved, or a set-up that has changed, is believed to stand.
+    int min_frames_since_move = 5;
+    double max_motion_off_share = 0.1;  // of the arm's motion by a mistake in it
     // Agreement below which the image contradicts the pose, so that the object is searched for anew.
     double contradicted_below = 0.8;
     // Below one of these the pose is lost.
@@ -69,6 +79,10 @@ enum class Requirement {
     kOverlap,            // mask and model cover each other: PixelCost::overlap
     kAlternativesTried,  // the pose was compared with those that look alike
     kAlternatives,       // none of them explains the image nearly as well: their share of the probability
+    kNewImage,           // the image is not the one before
+    kStands,             // the part was not moved just now, by what image and arm say together
+    kArmMotion,          // the images move as the arm says
+    kSetup,              // the part does not seem to move by an error of the set-up [m]
     kTranslation,        // 90 % of the probability lies within the tolerance [m]
     kRotation,           // the same [rad]
 };
@@ -88,7 +102,7 @@ std::string describe(const Shortfall& shortfall);
 
 struct Judgement {
     Verdict verdict = Verdict::kLost;
-    bool verified = false;           // nothing but precision is missing
+    bool verified = false;           // the image confirms the pose: only precision or the set-up may be missing
     std::vector<Shortfall> missing;  // empty: accepted
 };
 

@@ -138,6 +138,16 @@ Matrix6d constant_covariance_of(const Problem& problem, const Eigen::LLT<Eigen::
     return steps * steps.transpose();
 }
 
+// The scale of the depth is an unknown beside the pose; without rays that measure it, it has no effect.
+SetupEffect setup_effect_of(const Problem& problem, const Eigen::LLT<Eigen::MatrixXd>& factor, Eigen::Index scale) {
+    SetupEffect effect = SetupEffect::Zero();
+    const Eigen::MatrixXd constants = factor.solve(problem.constant_gradients);
+    effect.leftCols<3>() = constants.topRows<6>().rightCols<3>();
+    if (problem.active.back() == scale)
+        effect.col(kDepthScaleError) = Eigen::VectorXd(factor.solve(problem.information.rightCols<1>())).head<6>();
+    return effect;
+}
+
 }  // namespace
 
 void validate(const FitOptions& options) {
@@ -193,6 +203,7 @@ JointFit fit_jointly(const Pose& start, const StepContext& context, const FitOpt
             fit.shared_sigma_m = seen_field_sigma_m(problem, seen, sensor);
             fit.covariance = covariance_of(seen, weight, factor);
             fit.constant_covariance = constant_covariance_of(problem, factor, context.observation, options);
+            fit.setup_effect = setup_effect_of(problem, factor, 6 + field.num_nodes());
         }
         fit.pairs = equations.rays;
         if (last) break;

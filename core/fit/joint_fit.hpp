@@ -38,6 +38,13 @@ struct FitOptions {
 // Throws std::invalid_argument naming field, value and bound.
 void validate(const FitOptions& options);
 
+// Errors of the set-up that the fit leaves alone.
+enum SetupError : Eigen::Index { kFocalLengthError, kImageColumns, kImageRows, kDepthScaleError };
+inline constexpr Eigen::Index kSetupErrors = 4;
+// The twist that a fit is off by for each error of size 1: the focal length is larger by its own size, the principal
+// point by one column or row, the measured depth by its own size.
+using SetupEffect = Eigen::Matrix<double, 6, kSetupErrors>;
+
 // Covariances are of the twist about the model's centre, in object axes, rotation first.
 struct JointFit {
     Pose camera_from_object;
@@ -48,6 +55,7 @@ struct JointFit {
     Matrix6d constant_covariance = Matrix6d::Zero();
     // Of what neighbouring rays are off together, as these residuals show it: errors of the sensor and of the CAD [m].
     double shared_sigma_m = 0.0;
+    SetupEffect setup_effect = SetupEffect::Zero();
 };
 
 // Gauss-Newton from a pose in the basin of attraction, such as a refined mode. A new view is cast each round, and the

@@ -9,23 +9,11 @@
 namespace nearpose {
 namespace {
 
-// The twist about the centre that takes `from` to `to` (inverse of perturb_about).
-Twist twist_about(const Pose& from, const Pose& to, const Eigen::Vector3d& centre_in_object) {
-    Twist twist;
-    twist.head<3>() = log(Pose{from.rotation.conjugate() * to.rotation, Eigen::Vector3d::Zero()}).head<3>();
-    twist.tail<3>() = from.rotation.conjugate() * (to * centre_in_object - from * centre_in_object);
-    return twist;
-}
-
 // Covariance of the twist about the centre that an error of the camera's motion causes. That error is a rotation and a
 // translation in camera axes.
 Matrix6d motion_covariance(const Pose& camera_from_object, const Eigen::Vector3d& centre_in_object, double rotation_rad,
                            double translation_m) {
-    const Eigen::Matrix3d object_from_camera = camera_from_object.rotation_matrix().transpose();
-    Matrix6d map = Matrix6d::Zero();
-    map.topLeftCorner<3, 3>() = object_from_camera;
-    map.bottomLeftCorner<3, 3>() = -object_from_camera * skew(camera_from_object * centre_in_object);
-    map.bottomRightCorner<3, 3>() = object_from_camera;
+    const Matrix6d map = from_camera_twist(camera_from_object, centre_in_object);
     Twist variances;
     variances << Eigen::Vector3d::Constant(rotation_rad * rotation_rad),
         Eigen::Vector3d::Constant(translation_m * translation_m);

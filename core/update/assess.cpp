@@ -38,6 +38,14 @@ std::string name_of_alternative(const std::vector<Mode>& modes, const Pose& pose
            " and shifted by " + fixed_text(kMillimetres * shift_m, 1) + " mm";
 }
 
+void add_findings(const ArmFindings& arm, Evidence& evidence) {
+    evidence.frames_since_move = arm.frames_since_move;
+    evidence.motion_off_share = arm.motion.mistake == MotionMistake::kNone ? 0.0 : arm.motion.off_share;
+    evidence.motion_mistake = to_string(arm.motion.mistake);
+    evidence.setup_error_m = arm.world.error_bound_m;
+    evidence.setup_cause = to_string(arm.world.cause);
+}
+
 }  // namespace
 
 Assessment assess(UpdateResult& result, const Belief& belief, const std::optional<JointFit>& fit, const Frame& frame,
@@ -76,6 +84,8 @@ Assessment assess(UpdateResult& result, const Belief& belief, const std::optiona
     evidence.alternatives_weight = belief.lock.alternatives_weight;
     evidence.alternatives_tried = belief.lock.alternatives_tried >= std::max(1, method.hypotheses.alternatives);
     evidence.alternative = name_of_alternative(result.modes, pose, frame.model);
+    result.arm = check_arm(belief.sightings, centre, 0.5 * frame.model.diameter_m(), method.arm_check);
+    add_findings(result.arm, evidence);
     evidence.covariance_about_centre = about_centre(result.covariance, centre);
     const Judgement judgement = judge(evidence, frame.options.tolerance, frame.model.symmetries, method.verification);
     result.verdict = judgement.verdict;

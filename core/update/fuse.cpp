@@ -1,6 +1,7 @@
 #include "core/update/fuse.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/fit/joint_fit.hpp"
 #include "core/update/ray_grids.hpp"
@@ -39,12 +40,16 @@ JointFit correct(Belief& belief, const Choice& choice, const Situation& situatio
     const StepContext context = frame.context(ledger.measured(grid, frame.observation), frame.method().step);
     const JointFit fit = fit_jointly(chosen, context, frame.method().fit);
     const Eigen::Vector3d centre = frame.model.centre_in_object();
-    if (!belief.track || choice.replaces_tracked)
+    const bool anew = !belief.track || choice.replaces_tracked;
+    const bool moved = !anew && contradicts(*belief.track, fit, centre, frame.method().track);
+    if (anew) belief.sightings.kept.clear();
+    if (anew)
         belief.track = Track{fit.camera_from_object, fit.covariance, {}, fit.constant_covariance};
-    else if (!contradicts(*belief.track, fit, centre, frame.method().track) ||
-             outweighs_prediction(fit.camera_from_object, belief.track->camera_from_object, context, belief.lock,
-                                  situation, frame.method()))
+    else if (!moved || outweighs_prediction(fit.camera_from_object, belief.track->camera_from_object, context,
+                                            belief.lock, situation, frame.method()))
         belief.track = correct_track(*belief.track, fit, centre, frame.method().track);
+    belief.sightings =
+        with_sighting(std::move(belief.sightings), fit, moved, centre, frame.method().arm_check.sightings);
     belief.tracked->camera_from_object = belief.track->camera_from_object;
     return fit;
 }

@@ -133,5 +133,25 @@ TEST(Estimator, AJoltThatNobodyMeasuredIsFollowedInTheFrameItself) {
     EXPECT_LT(worst_m, 0.003);
 }
 
+TEST(Estimator, AnImageThatComesAgainNeitherConfirmsNorMovesAnything) {
+    PoseEstimator estimator(kPart, kSolver, small_options(method_default(), 0));
+    estimator.update(observe_at(0), {});
+    for (int frame = 1; frame < 4; ++frame) estimator.update(observe_at(frame), motion_to(frame));
+    const Lock before = estimator.belief().lock;
+    for (int frame = 4; frame < 8; ++frame) {
+        const UpdateResult hung = estimator.update(observe_at(3), motion_to(frame));
+        EXPECT_EQ(hung.status, UpdateStatus::kPredicted);
+        EXPECT_EQ(hung.verdict, Verdict::kContinue);
+        ASSERT_EQ(hung.missing.size(), 1U);
+        EXPECT_EQ(hung.missing[0].requirement, Requirement::kNewImage);
+        EXPECT_EQ(hung.missing[0].value, frame - 3);
+        EXPECT_LT(error_m(hung, frame), 0.001) << "the part stands still; the camera moves";
+    }
+    EXPECT_EQ(estimator.belief().lock.frames_unreplaced, before.frames_unreplaced);
+    const UpdateResult seen = estimator.update(observe_at(8), motion_to(8));
+    EXPECT_EQ(seen.status, UpdateStatus::kEstimated);
+    EXPECT_LT(error_m(seen, 8), 0.001);
+}
+
 }  // namespace
 }  // namespace nearpose

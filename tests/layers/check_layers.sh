@@ -76,7 +76,7 @@ forbid 'opencv' 'OpenCV outside stereo_matcher.cpp' "${core[@]}" "${raycast[@]}"
 
 # Values; the ports; what is measured; shapes, evidence, filter, search and fit, each on those before it; the method and
 # its options; the stages of an update; the estimator.
-check_room_order core base 'view_generator correspondences' pose_solver observation shape evidence filter search fit \
+check_room_order core base 'view_generator correspondences' pose_solver observation shape evidence filter search fit world \
     method options result update estimator
 
 # Rooms that several commands share, then one room a command, then the list of the commands.

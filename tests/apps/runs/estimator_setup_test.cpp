@@ -43,6 +43,9 @@ TEST(EstimatorSetup, LeavesOneNamedPartOut) {
     EXPECT_EQ(without("memory").choice.log_odds_kept, 0.0);
     EXPECT_EQ(without("shared_errors").verification.shared_errors_allowed, 0.0);
     EXPECT_GT(whole.verification.shared_errors_allowed * whole.choice.log_odds_kept, 0.0);
+    EXPECT_TRUE(whole.arm_check.on && whole.repeated_image.on);
+    EXPECT_FALSE(without("arm_check").arm_check.on);
+    EXPECT_FALSE(without("repeated_image").repeated_image.on);
     EXPECT_FALSE(without("confidence").choice.accepted_evidence);
     EXPECT_FALSE(without("doubts").relocalisation.low_agreement);
     EXPECT_THROW(without("wheels"), std::invalid_argument);

@@ -70,6 +70,13 @@ TEST(Verdict, NamesWhatIsMissingWithFigureAndLimit) {
          "another pose explains the image as well: half a turn about z, 0.30 of the probability, wanted 0.01 at most"},
         {[](Evidence& e) { e.alternatives_tried = false; }, Requirement::kAlternativesTried,
          "not yet compared with poses that look alike"},
+        {[](Evidence& e) { e.frames_since_move = 2; }, Requirement::kStands,
+         "image and arm contradict each other: the part was moved, or the set-up is at fault; 2 frames ago, wanted 5"},
+        {[](Evidence& e) { e.motion_off_share = 2.0, e.motion_mistake = "as if it were inverted"; },
+         Requirement::kArmMotion,
+         "the image moves as if it were inverted: the arm's motion is off by 2.00 of itself, wanted 0.10 at most"},
+        {[](Evidence& e) { e.setup_error_m = 0.006, e.setup_cause = "principal point"; }, Requirement::kSetup,
+         "the part seems to move with the camera, by the principal point: up to 6.0 mm here, wanted 2.0 mm at most"},
         {[](Evidence& e) { e.covariance_about_centre(4, 4) = 0.002 * 0.002; }, Requirement::kTranslation,
          "precision: 5.0 mm along y, wanted 2.0 mm"},
         {[](Evidence& e) { e.covariance_about_centre(0, 0) = 0.02 * 0.02; }, Requirement::kRotation,
@@ -98,6 +105,8 @@ TEST(Verdict, NothingIsMissingOfWhatIsAcceptedAndAllOfWhatIsNot) {
 // A sentence that says "0.93, wanted 0.93" explains nothing.
 TEST(Verdict, SentencesTellTheFigureFromItsLimit) {
     EXPECT_EQ(describe({Requirement::kAgreement, 0.9284, 0.93, {}}), "too little agrees: 0.928, wanted 0.930");
+    EXPECT_EQ(describe({Requirement::kNewImage, 4.0, 0.0, "12.0 mm"}),
+              "the image has not changed for 4 frames while the camera moved by 12.0 mm");
     EXPECT_EQ(describe({Requirement::kTranslation, 0.00214, 0.00015, "x"}),
               "precision: 2.14 mm along x, wanted 0.15 mm");
     EXPECT_EQ(describe({Requirement::kRotation, 0.0174535, 0.0174533, "z"}),

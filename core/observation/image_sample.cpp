@@ -1,0 +1,63 @@
+#include "core/observation/image_sample.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "core/base/check.hpp"
+
+namespace nearpose {
+
+void validate(const RepeatedImageOptions& options) {
+    check_option("repeated_image.columns", options.columns, 1, 10000);
+    check_option("repeated_image.rows", options.rows, 1, 10000);
+    check_option("repeated_image.min_measured", options.min_measured, 1, 1e9);
+    check_option("repeated_image.equal_share", options.equal_share, 0.0, 1.0);
+}
+
+ImageSample sample_of(const Observation& observation, const RepeatedImageOptions& options) {
+    const PinholeCamera& camera = observation.camera();
+    ImageSample sample{camera.width, camera.height, {}};
+    const int columns = std::min(options.columns, camera.width), rows = std::min(options.rows, camera.height);
+    sample.depth_m.reserve(static_cast<std::size_t>(columns) * rows);
+    for (int row = 0; row < rows; ++row) {
+        const int v = row * camera.height / rows;
+        for (int column = 0; column < columns; ++column)
+            sample.depth_m.push_back(observation.depth_m()[v * camera.width + column * camera.width / columns]);
+    }
+    return sample;
+}
+
+bool same_image(const ImageSample& a, const ImageSample& b, const RepeatedImageOptions& options) {
+    if (!options.on || a.width != b.width || a.height != b.height || a.depth_m.size() != b.depth_m.size()) return false;
+    int measured = 0, equal = 0;
+    for (std::size_t i = 0; i < a.depth_m.size(); ++i) {
+        if (!(a.depth_m[i] > 0.0F) && !(b.depth_m[i] > 0.0F)) continue;
+        ++measured;
+        equal += a.depth_m[i] == b.depth_m[i];
+    }
+    return measured >= options.min_measured && equal >= options.equal_share * measured;
+}
+
+namespace {
+
+// Whether a motion shifts no pixel by as much as a quarter.
+bool at_rest(const Pose& now_from_before, const Observation& observation) {
+    constexpr double kPixels = 0.25;
+    const Twist motion = log(now_from_before);
+    const double angle_rad =
+        motion.head<3>().norm() + motion.tail<3>().norm() / std::max(observation.mean_distance_m(), 1e-3);
+    return angle_rad * observation.camera().fx < kPixels;
+}
+
+}  // namespace
+
+ImageMemory seen_again(const ImageMemory& before, const Observation& observation,
+                       const std::optional<Pose>& now_from_before, const RepeatedImageOptions& options) {
+    ImageMemory now{sample_of(observation, options), 0, {}};
+    if (!same_image(before.sample, now.sample, options)) return now;
+    const Pose moved = now_from_before.value_or(Pose{}) * before.now_from_sample;
+    if (before.repeats == 0 && now_from_before && at_rest(moved, observation)) return now;
+    return {before.sample, before.repeats + 1, moved};
+}
+
+}  // namespace nearpose
