@@ -73,6 +73,8 @@ forbid 'embree|assimp|flann|omp\.h' 'a heavy library outside its folder' "${opti
 forbid 'flann|omp\.h' 'a heavy library outside its folder' "${apps[@]}"
 forbid 'opencv' 'OpenCV outside stereo_matcher.cpp' "${core[@]}" "${raycast[@]}" "${optim[@]}" \
     $(printf '%s\n' "${apps[@]}" | grep -vx apps/depth_sensor/stereo_matcher.cpp)
+forbid 'tiff' 'libtiff outside tiff_file.cpp' $(printf '%s\n' "${apps[@]}" | grep -vx apps/data_set/tiff_file.cpp)
+forbid 'Imf|OpenEXR' 'OpenEXR outside exr_file.cpp' $(printf '%s\n' "${apps[@]}" | grep -vx apps/data_set/exr_file.cpp)
 
 # Values; the ports; what is measured; shapes, evidence, filter, search and fit, each on those before it; the method and
 # its options; the stages of an update; the estimator.
