@@ -57,11 +57,14 @@ TEST(UnitCheck, WhereNoUnitFitsNothingIsSaid) {
     EXPECT_FALSE(program::unit_notice(model, 0.1, kMasked));
     EXPECT_EQ(program::unit_notice(model, 0.0047, kMasked),
               "a.stl: the model measures 4.7 mm, the masked region 100 mm: is the file in inches? Say --unit in");
+    const TinyScene scene(1);
     program::ModelOptions bop;
-    bop.models = "models";
+    bop.models = scene.models().string();
+    const std::string file = (scene.models() / "obj_000001.ply").string();
     EXPECT_EQ(program::unit_notice(bop, 0.0047, kMasked),
-              "models/obj_000001.ply: the model measures 4.7 mm, the masked region 100 mm: is the file in inches? "
-              "Import it again with --unit in");
+              file +
+                  ": the model measures 4.7 mm, the masked region 100 mm: is the file in inches? "
+                  "Import it again with --unit in");
 }
 
 TEST(UnitCheck, EstimateNamesIt) {
