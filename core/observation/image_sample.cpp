@@ -19,10 +19,10 @@ ImageSample sample_of(const Observation& observation, const RepeatedImageOptions
     ImageSample sample{camera.width, camera.height, {}};
     const int columns = std::min(options.columns, camera.width), rows = std::min(options.rows, camera.height);
     sample.depth_m.reserve(static_cast<std::size_t>(columns) * rows);
+    const int step_u = camera.width / columns, step_v = camera.height / rows;
     for (int row = 0; row < rows; ++row) {
-        const int v = row * camera.height / rows;
-        for (int column = 0; column < columns; ++column)
-            sample.depth_m.push_back(observation.depth_m()[v * camera.width + column * camera.width / columns]);
+        const float* depth_m = observation.depth_m().data() + row * step_v * camera.width;
+        for (int column = 0; column < columns; ++column) sample.depth_m.push_back(depth_m[column * step_u]);
     }
     return sample;
 }

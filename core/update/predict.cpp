@@ -1,6 +1,7 @@
 #include "core/update/predict.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace nearpose {
@@ -42,7 +43,7 @@ Belief predict(const Belief& before, const Frame& frame, Ledger& ledger) {
         if (belief.tracked) belief.tracked->camera_from_object = *motion * belief.tracked->camera_from_object;
         if (belief.pose_before_loss) belief.pose_before_loss = *motion * *belief.pose_before_loss;
     }
-    belief.sightings = after_motion(belief.sightings, motion);
+    belief.sightings = after_motion(std::move(belief.sightings), motion);
     if (belief.track) move_track(*belief.track, motion, options.motion_noise, centre);
     const double diameters = motion ? filter.diffusion_diameters : filter.unmeasured_diffusion_diameters;
     diffuse(belief.particles, {filter.diffusion_rotation_rad, diameters * frame.model.diameter_m()}, centre,

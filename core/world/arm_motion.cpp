@@ -165,9 +165,10 @@ ArmMotion compare_motions(const std::vector<Sighting>& sightings, const Eigen::V
     ArmMotion motion;
     motion.pairs = static_cast<int>(pairs.size());
     if (motion.pairs < options.min_pairs) return motion;
-    const Eigen::Quaterniond turn = best_turn(pairs, radius_m);
-    motion.off_share = median_off(pairs, MotionMistake::kNone, turn, centre_in_object, radius_m);
+    motion.off_share =
+        median_off(pairs, MotionMistake::kNone, Eigen::Quaterniond::Identity(), centre_in_object, radius_m);
     if (motion.off_share < options.off_share) return motion;
+    const Eigen::Quaterniond turn = best_turn(pairs, radius_m);
     double least = options.explained_share * motion.off_share;
     for (int k = 1; k < kNumMotionMistakes; ++k) {
         const auto mistake = static_cast<MotionMistake>(k);

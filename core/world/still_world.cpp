@@ -11,30 +11,38 @@ namespace {
 
 // The unknowns, in this order.
 constexpr Eigen::Index kPlace = 0;                            // of the part: a twist
-constexpr Eigen::Index kVelocity = 6;                         // a twist a frame
-constexpr Eigen::Index kSetup = 12;                           // errors that have a SetupEffect
+constexpr Eigen::Index kSetup = 6;                            // errors that have a SetupEffect
 constexpr Eigen::Index kHandEyeTurn = kSetup + kSetupErrors;  // in camera axes
 constexpr Eigen::Index kHandEyeShift = kHandEyeTurn + 3;
 constexpr Eigen::Index kTime = kHandEyeShift + 3;  // frames
-constexpr Eigen::Index kNumUnknowns = kTime + 1;
+constexpr Eigen::Index kVelocity = kTime + 1;      // a twist a frame
+constexpr Eigen::Index kNumUnknowns = kVelocity + 6;
 using Unknowns = Eigen::Matrix<double, kNumUnknowns, 1>;
 using Square = Eigen::Matrix<double, kNumUnknowns, kNumUnknowns>;
 
+// Normal equations; of the symmetric matrix the lower half is kept.
 struct Sums {
     Square information = Square::Zero();
     Unknowns gradient = Unknowns::Zero();
 };
 
+// The rows of the velocity are those of the place times the frames gone by, so that they need no products of their own.
 void add(const Sighting& sighting, const Sighting& first, double frames, const Eigen::Vector3d& centre,
          const StillWorldOptions& options, Sums& sums) {
+    constexpr Eigen::Index kOthers = kVelocity;
     const Matrix6d from_camera = from_camera_twist(sighting.camera_from_object, centre);
-    Eigen::Matrix<double, 6, kNumUnknowns> rows;
-    rows << Matrix6d::Identity(), frames * Matrix6d::Identity(), sighting.setup_effect, from_camera,
-        from_camera * sighting.camera_motion;
+    Eigen::Matrix<double, 6, kOthers> rows;
+    rows << Matrix6d::Identity(), sighting.setup_effect, from_camera, from_camera * sighting.camera_motion;
     const Eigen::LLT<Matrix6d> factor(sighting.covariance * options.sightings_per_error);
-    const Eigen::Matrix<double, 6, kNumUnknowns> weighted = factor.solve(rows);
-    sums.information += rows.transpose() * weighted;
-    sums.gradient += weighted.transpose() * twist_about(first.arm_from_object(), sighting.arm_from_object(), centre);
+    const Eigen::Matrix<double, 6, kOthers> whitened = factor.matrixL().solve(rows);
+    const Twist off = factor.matrixL().solve(twist_about(first.arm_from_object(), sighting.arm_from_object(), centre));
+    const Eigen::Matrix<double, kOthers, kOthers> information = whitened.transpose().lazyProduct(whitened);
+    const Eigen::Matrix<double, kOthers, 1> gradient = whitened.transpose().lazyProduct(off);
+    sums.information.topLeftCorner<kOthers, kOthers>() += information;
+    sums.information.bottomLeftCorner<6, kOthers>() += frames * information.topRows<6>();
+    sums.information.bottomRightCorner<6, 6>() += frames * frames * information.topLeftCorner<6, 6>();
+    sums.gradient.head<kOthers>() += gradient;
+    sums.gradient.tail<6>() += frames * gradient.head<6>();
 }
 
 void set(Unknowns& variances, Eigen::Index first, Eigen::Index count, double sigma) {
