@@ -16,7 +16,8 @@ struct MeshFaults {
     // Faces are missing: where pieces' edges merely do not fit together, nothing is seen through them; and of a scan
     // that is open below few edges are open.
     bool has_holes() const { return open_edges > 0.1 && see_through > 0.05; }
-    bool has_inner_surface() const { return hidden > 0.2; }
+    // As much is hidden as is seen: a second shell. Inner bodies that are smaller change no view.
+    bool has_second_shell() const { return hidden > 0.45; }
     bool is_double() const { return crowded_edges > 0.5; }
 };
 

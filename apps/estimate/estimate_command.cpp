@@ -32,6 +32,7 @@ struct Tally {
 
     int frames = 0, unread = 0, seen = 0;
     std::vector<JudgedFrame> judged;
+    ArmSentences arm;
     data_set::Notices errors, notices;  // what has been said of frames: each matter once
     UnitCheck unit;
 };
@@ -40,6 +41,10 @@ JudgedFrame judged(int frame_id, const UpdateResult& result) {
     JudgedFrame frame{frame_id, result.verdict, {}};
     for (const Shortfall& shortfall : result.missing) frame.missing.emplace_back(to_string(shortfall.requirement));
     return frame;
+}
+
+bool is_repeated(const UpdateResult& result) {
+    return !result.missing.empty() && result.missing.front().requirement == Requirement::kNewImage;
 }
 
 std::optional<data_set::ModelInfo> declared_info(const ModelOptions& model) {
@@ -201,12 +206,15 @@ void run_frame(const RunContext& run, std::size_t index, PoseEstimator& estimato
         if (tally.errors.add(frame.id, report.error)) {
             print_error("frame " + std::to_string(frame.id) + ": " + report.error + consequence);
         }
+    } else if (is_repeated(result)) {
+        note(frame.id, "the image is the one before", consequence, run.shared, tally);
     } else if (result.status != UpdateStatus::kEstimated) {
         note(frame.id, "the object is not seen (" + why_unseen(run.source, index, observation) + ")", consequence,
              run.shared, tally);
     }
     if (result.status == UpdateStatus::kEstimated) ++tally.seen;
     tally.judged.push_back(judged(frame.id, result));
+    gather(tally.arm, frame.id, result.missing);
     const bool is_last = index + 1 == run.source.frames().size();
     if (const auto notice = tally.unit.after(observation, result.verdict, is_last))
         print_notice(*notice, run.shared.quiet);
@@ -228,6 +236,7 @@ void print_repeats(const Tally& tally, const FrameSource& source, const SharedOp
 void print_verdicts(const Tally& tally, const SharedOptions& shared) {
     if (tally.seen == 0) return;
     for (const std::string& line : summary_lines(tally_of(tally.judged))) print_notice(line, shared.quiet);
+    for (const auto& [requirement, sentence] : tally.arm) print_notice(sentence, shared.quiet);
 }
 
 int exit_code(const Tally& tally) {

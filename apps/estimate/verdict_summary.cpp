@@ -26,4 +26,13 @@ std::vector<std::string> summary_lines(const VerdictTally& tally) {
     return lines;
 }
 
+void gather(ArmSentences& sentences, int frame_id, const std::vector<Shortfall>& missing) {
+    for (const Shortfall& shortfall : missing) {
+        const Requirement requirement = shortfall.requirement;
+        if (requirement == Requirement::kNewImage || requirement == Requirement::kArmMotion ||
+            requirement == Requirement::kSetup)
+            sentences[requirement] = "frame " + std::to_string(frame_id) + ": " + describe(shortfall);
+    }
+}
+
 }  // namespace nearpose::program

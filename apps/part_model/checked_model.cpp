@@ -55,10 +55,10 @@ void add_faults(const std::string& name, const MeshFaults& faults, std::vector<s
                           " of its edges belong to one triangle alone. Where faces are missing another surface is "
                           "expected than the camera sees, and poses are hardly accepted; export a closed surface");
     }
-    if (faults.has_inner_surface()) {
+    if (faults.has_second_shell()) {
         notices.push_back(name + percent(faults.hidden) +
-                          " of the surface cannot be seen from outside (inner bodies, or a second shell); export the "
-                          "outer surface alone");
+                          " of the surface cannot be seen from outside, as of a second shell; export the outer "
+                          "surface alone");
     }
     if (faults.is_double()) {
         notices.push_back(name + percent(faults.crowded_edges) +

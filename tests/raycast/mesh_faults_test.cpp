@@ -29,7 +29,7 @@ TEST(MeshFaults, AClosedSurfaceHasNone) {
         const MeshFaults faults = faults_of(mesh);
         EXPECT_EQ(faults.open_edges, 0.0);
         EXPECT_EQ(faults.crowded_edges, 0.0);
-        EXPECT_FALSE(faults.has_holes() || faults.has_inner_surface() || faults.is_double());
+        EXPECT_FALSE(faults.has_holes() || faults.has_second_shell() || faults.is_double());
     }
 }
 
@@ -41,7 +41,7 @@ TEST(MeshFaults, MissingTrianglesShowAsTheirShare) {
         EXPECT_NEAR(faults.open_edges, 2.0 * missing * (1.0 - missing) / (1.0 - missing * missing), 0.03);
         EXPECT_NEAR(faults.see_through, missing, 0.05);
         EXPECT_TRUE(faults.has_holes());
-        EXPECT_FALSE(faults.has_inner_surface());
+        EXPECT_FALSE(faults.has_second_shell());
     }
 }
 
@@ -82,12 +82,14 @@ TEST(MeshFaults, CornersAlmostInOnePlaceAreOne) {
 }
 
 TEST(MeshFaults, AnInnerBodyIsHiddenByItsShareOfTheArea) {
-    const MeshFaults faults = faults_of(joined(make_sphere(0.1, 30), make_sphere(0.08, 30)));
-    EXPECT_NEAR(faults.hidden, 0.64 / 1.64, 0.03);
-    EXPECT_TRUE(faults.has_inner_surface());
-    EXPECT_FALSE(faults.has_holes());
+    const MeshFaults body = faults_of(joined(make_sphere(0.1, 30), make_sphere(0.08, 30)));
+    EXPECT_NEAR(body.hidden, 0.64 / 1.64, 0.03);
+    EXPECT_FALSE(body.has_second_shell() || body.has_holes());
+    const MeshFaults shell = faults_of(joined(make_sphere(0.1, 30), make_sphere(0.098, 30)));
+    EXPECT_TRUE(shell.has_second_shell());
+    EXPECT_FALSE(shell.has_holes());
     const Mesh beside = joined(make_box({0.1F, 0.1F, 0.1F}), make_box({0.02F, 0.02F, 0.3F}));
-    EXPECT_FALSE(faults_of(beside).has_inner_surface());
+    EXPECT_FALSE(faults_of(beside).has_second_shell());
 }
 
 TEST(MeshFaults, EqualSurfacesAreDouble) {

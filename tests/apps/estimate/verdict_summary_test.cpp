@@ -31,6 +31,15 @@ TEST(VerdictSummary, HasOneLineWhereAllIsAcceptedAndNoAdviceForWhatItDoesNotKnow
     EXPECT_EQ(summary_lines({1, 0, 1, 0, {{"colour", 1, 0}}}).at(1), "1 of 1 frame lacks colour (first: 0)");
 }
 
+TEST(VerdictSummary, KeepsTheLastSentenceOfWhatImageAndArmSayAgainstEachOther) {
+    program::ArmSentences sentences;
+    program::gather(sentences, 4, {{Requirement::kNewImage, 1.0, 0.0, "4.0 mm"}, {Requirement::kSeen, 0.0, 1.0, {}}});
+    program::gather(sentences, 5, {{Requirement::kNewImage, 2.0, 0.0, "8.0 mm"}});
+    ASSERT_EQ(sentences.size(), 1U);
+    EXPECT_EQ(sentences.at(Requirement::kNewImage),
+              "frame 5: the image has not changed for 2 frames while the camera moved by 8.0 mm");
+}
+
 // The summary agrees with the log: of a part that is precise enough in no frame, and hidden in one of three.
 TEST(VerdictSummary, OfARunIsThatOfItsLog) {
     const TinyScene scene(3);
