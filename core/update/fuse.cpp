@@ -42,14 +42,15 @@ JointFit correct(Belief& belief, const Choice& choice, const Situation& situatio
     const Eigen::Vector3d centre = frame.model.centre_in_object();
     const bool anew = !belief.track || choice.replaces_tracked;
     const bool moved = !anew && contradicts(*belief.track, fit, centre, frame.method().track);
-    if (anew) belief.sightings.kept.clear();
+    const Continuity continuity =
+        anew ? Continuity::kOtherMode : (moved ? Continuity::kContradicted : Continuity::kAsPredicted);
     if (anew)
         belief.track = Track{fit.camera_from_object, fit.covariance, {}, fit.constant_covariance};
     else if (!moved || outweighs_prediction(fit.camera_from_object, belief.track->camera_from_object, context,
                                             belief.lock, situation, frame.method()))
         belief.track = correct_track(*belief.track, fit, centre, frame.method().track);
     belief.sightings =
-        with_sighting(std::move(belief.sightings), fit, moved, centre, frame.method().arm_check.sightings);
+        with_sighting(std::move(belief.sightings), fit, continuity, centre, frame.method().arm_check.sightings);
     belief.tracked->camera_from_object = belief.track->camera_from_object;
     return fit;
 }

@@ -111,6 +111,7 @@ std::vector<Pair> pairs_of(const std::vector<Sighting>& sightings, const Eigen::
     for (std::size_t k = sightings.size(); k-- > 1 && static_cast<int>(pairs.size()) < options.pairs;) {
         const Sighting& before = sightings[k - 1];
         const Sighting& now = sightings[k];
+        if (now.other_mode) continue;
         const double moved_m = length(twist_about(before.camera_from_object, now.camera_from_object, centre), radius_m);
         const Matrix6d sum = before.covariance + now.covariance;
         const double sigma_m =

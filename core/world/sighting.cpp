@@ -55,7 +55,7 @@ bool goes_on(const std::vector<Sighting>& kept, const Sighting& now, const Eigen
 
 }  // namespace
 
-Sightings with_sighting(Sightings sightings, const JointFit& fit, bool contradicted,
+Sightings with_sighting(Sightings sightings, const JointFit& fit, Continuity continuity,
                         const Eigen::Vector3d& centre_in_object, const SightingOptions& options) {
     std::vector<Sighting>& kept = sightings.kept;
     Twist arm;
@@ -67,13 +67,16 @@ Sightings with_sighting(Sightings sightings, const JointFit& fit, bool contradic
                  fit.covariance + from_camera * arm.asDiagonal() * from_camera.transpose(),
                  fit.setup_effect,
                  sightings.camera_motion,
+                 continuity == Continuity::kOtherMode,
                  false};
-    now.moved = contradicted && !goes_on(kept, now, centre_in_object, options.goes_on_chi_square);
-    if (now.moved)
+    const bool pushed =
+        continuity == Continuity::kContradicted && !goes_on(kept, now, centre_in_object, options.goes_on_chi_square);
+    now.moved = pushed || now.other_mode;
+    if (pushed)
         sightings.frames_since_move = 0;
     else if (sightings.frames_since_move)
         ++*sightings.frames_since_move;
-    const bool at_rest = kept.size() > 1 && !contradicted && !kept.back().moved &&
+    const bool at_rest = kept.size() > 1 && continuity == Continuity::kAsPredicted && !kept.back().moved &&
                          motion_between(kept[kept.size() - 2], now, centre_in_object) < options.min_motion;
     if (at_rest)
         kept.back() = now;

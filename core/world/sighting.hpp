@@ -19,6 +19,7 @@ struct Sighting {
     Matrix6d covariance = Matrix6d::Zero();          // of the image's own errors and of the arm's
     SetupEffect setup_effect = SetupEffect::Zero();  // what the fit takes errors of the set-up for
     Twist camera_motion = Twist::Zero();             // of this frame, in camera axes
+    bool other_mode = false;                         // than that of the sighting before
     bool moved = false;                              // something was moved since the sighting before
 
     Pose arm_from_object() const { return arm_from_camera * camera_from_object; }
@@ -50,9 +51,15 @@ void validate(const SightingOptions& options);
 // The camera moved; without a measured motion nothing holds that was seen before.
 Sightings after_motion(Sightings sightings, const std::optional<Pose>& now_from_before);
 
-// One more sighting at the present arm_from_camera, by an image's own fit. `contradicted`: it is not where the arm's
-// motion puts the part.
-Sightings with_sighting(Sightings sightings, const JointFit& fit, bool contradicted,
+// How a fit follows the one before.
+enum class Continuity {
+    kAsPredicted,
+    kContradicted,  // it is not where the arm's motion puts the part
+    kOtherMode,     // of the posterior: it says nothing of the motion
+};
+
+// One more sighting at the present arm_from_camera, by an image's own fit.
+Sightings with_sighting(Sightings sightings, const JointFit& fit, Continuity continuity,
                         const Eigen::Vector3d& centre_in_object, const SightingOptions& options);
 
 }  // namespace nearpose

@@ -82,6 +82,18 @@ TEST(ArmMotion, APartThatMovesByItselfIsNoMistakeOfTheArm) {
     EXPECT_EQ(motion.mistake, MotionMistake::kNone);
 }
 
+TEST(ArmMotion, AChangeOfTheModeIsNoMotionAndForgetsNone) {
+    const auto seen = [](int frame) {
+        const Pose other = frame < 8 ? Pose{} : turn_about_z(2.0);
+        return fit_at(approach(frame) * kWorldFromObject * other);
+    };
+    std::vector<Sighting> kept = sightings_of(10, seen, [](const Pose& m) { return m.inverse(); }).kept;
+    kept[8].other_mode = true;
+    const ArmMotion motion = compare_motions(kept, kCentre, kRadius_m);
+    EXPECT_EQ(motion.pairs, 8) << "of nine";
+    EXPECT_EQ(motion.mistake, MotionMistake::kInverted);
+}
+
 TEST(ArmMotion, FewPairsOrNoMotionTellNothing) {
     const auto rest = [](int) { return fit_at(kWorldFromObject); };
     const Sightings still = sightings_of(12, rest, [](const Pose& m) { return m.inverse(); });

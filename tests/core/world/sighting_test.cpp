@@ -29,7 +29,7 @@ TEST(Sightings, TheWindowSlides) {
     Sightings sightings;
     for (int frame = 0; frame < 20; ++frame) {
         if (frame > 0) sightings = after_motion(sightings, approach(frame) * approach(frame - 1).inverse());
-        sightings = with_sighting(sightings, of_a_part_that_stands(frame), false, kCentre, options);
+        sightings = with_sighting(sightings, of_a_part_that_stands(frame), Continuity::kAsPredicted, kCentre, options);
     }
     ASSERT_EQ(sightings.kept.size(), 7U);
     EXPECT_LT(twist_about(sightings.kept.back().camera_from_object, approach(19) * kWorldFromObject, kCentre).norm(),
@@ -40,7 +40,7 @@ TEST(Sightings, ACameraAtRestAddsNone) {
     Sightings sightings;
     for (int frame = 0; frame < 20; ++frame) {
         if (frame > 0) sightings = after_motion(sightings, Pose{});
-        sightings = with_sighting(sightings, of_a_part_that_stands(0), false, kCentre, {});
+        sightings = with_sighting(sightings, of_a_part_that_stands(0), Continuity::kAsPredicted, kCentre, {});
     }
     EXPECT_EQ(sightings.kept.size(), 2U);
 }
@@ -64,8 +64,8 @@ TEST(Sightings, APushIsAMoveAndAConveyorOnlyInItsFirstFrame) {
                 world_from_object.translation.x() += push_m + step_m * steps;
             }
             const bool contradicted = frame == 4 || (frame > 4 && step_m > 0.0);
-            sightings =
-                with_sighting(sightings, fit_at(approach(frame) * world_from_object), contradicted, kCentre, {});
+            sightings = with_sighting(sightings, fit_at(approach(frame) * world_from_object),
+                                      contradicted ? Continuity::kContradicted : Continuity::kAsPredicted, kCentre, {});
             flags.push_back(sightings.kept.back().moved);
         }
         return flags;
@@ -81,7 +81,8 @@ TEST(Sightings, FramesAreCountedSinceAMoveAlsoWhileTheCameraRests) {
         if (frame > 0) sightings = after_motion(sightings, Pose{});
         Pose world_from_object = kWorldFromObject;
         if (frame >= 4) world_from_object.translation.x() += 0.02;
-        sightings = with_sighting(sightings, fit_at(world_from_object), frame == 4, kCentre, {});
+        sightings = with_sighting(sightings, fit_at(world_from_object),
+                                  frame == 4 ? Continuity::kContradicted : Continuity::kAsPredicted, kCentre, {});
         const int since_move = sightings.frames_since_move.value_or(-1);
         EXPECT_EQ(since_move, frame < 4 ? -1 : frame - 4);
     }

@@ -39,7 +39,7 @@ Sightings sightings_of(int frames, const Seen& seen, const Given& given) {
     for (int frame = 0; frame < frames; ++frame) {
         if (frame > 0)
             sightings = after_motion(sightings, Pose(given(approach(frame) * approach(frame - 1).inverse())));
-        sightings = with_sighting(sightings, seen(frame), false, kCentre, {});
+        sightings = with_sighting(sightings, seen(frame), Continuity::kAsPredicted, kCentre, {});
     }
     return sightings;
 }
