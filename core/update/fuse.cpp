@@ -32,6 +32,11 @@ bool outweighs_prediction(const Pose& fitted, const Pose& predicted, const StepC
     return evidence * stride * stride >= lock.accepted_evidence && evidence >= evidence_for(predicted);
 }
 
+Continuity continuity_of(bool other_mode, bool contradicted, const Lock& before) {
+    if (other_mode) return before.accepted_evidence > 0.0 ? Continuity::kOtherThanAccepted : Continuity::kOtherMode;
+    return contradicted ? Continuity::kContradicted : Continuity::kAsPredicted;
+}
+
 // Where fit and prediction contradict each other, the object was moved: the fit counts. Where its evidence is too
 // small, the prediction stands.
 JointFit correct(Belief& belief, const Choice& choice, const Situation& situation, const Frame& frame, Ledger& ledger) {
@@ -42,15 +47,16 @@ JointFit correct(Belief& belief, const Choice& choice, const Situation& situatio
     const Eigen::Vector3d centre = frame.model.centre_in_object();
     const bool anew = !belief.track || choice.replaces_tracked;
     const bool moved = !anew && contradicts(*belief.track, fit, centre, frame.method().track);
-    const Continuity continuity =
-        anew ? Continuity::kOtherMode : (moved ? Continuity::kContradicted : Continuity::kAsPredicted);
+    const Continuity continuity = continuity_of(anew, moved, belief.lock);
+    const bool believed = !moved || outweighs_prediction(fit.camera_from_object, belief.track->camera_from_object,
+                                                         context, belief.lock, situation, frame.method());
     if (anew)
         belief.track = Track{fit.camera_from_object, fit.covariance, {}, fit.constant_covariance};
-    else if (!moved || outweighs_prediction(fit.camera_from_object, belief.track->camera_from_object, context,
-                                            belief.lock, situation, frame.method()))
+    else if (believed)
         belief.track = correct_track(*belief.track, fit, centre, frame.method().track);
-    belief.sightings =
-        with_sighting(std::move(belief.sightings), fit, continuity, centre, frame.method().arm_check.sightings);
+    if (believed)
+        belief.sightings =
+            with_sighting(std::move(belief.sightings), fit, continuity, centre, frame.method().arm_check.sightings);
     belief.tracked->camera_from_object = belief.track->camera_from_object;
     return fit;
 }

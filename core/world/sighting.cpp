@@ -67,12 +67,13 @@ Sightings with_sighting(Sightings sightings, const JointFit& fit, Continuity con
                  fit.covariance + from_camera * arm.asDiagonal() * from_camera.transpose(),
                  fit.setup_effect,
                  sightings.camera_motion,
-                 continuity == Continuity::kOtherMode,
+                 continuity == Continuity::kOtherMode || continuity == Continuity::kOtherThanAccepted,
                  false};
     const bool pushed =
         continuity == Continuity::kContradicted && !goes_on(kept, now, centre_in_object, options.goes_on_chi_square);
     now.moved = pushed || now.other_mode;
-    if (pushed)
+    const bool changed = now.other_mode && sightings.frames_since_move.has_value();
+    if (pushed || changed || continuity == Continuity::kOtherThanAccepted)
         sightings.frames_since_move = 0;
     else if (sightings.frames_since_move)
         ++*sightings.frames_since_move;

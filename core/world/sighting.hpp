@@ -30,7 +30,9 @@ struct Sightings {
     std::vector<Sighting> kept;
     Pose arm_from_camera;  // of the last frame, with or without a sighting
     Twist camera_motion = Twist::Zero();
-    std::optional<int> frames_since_move;  // of the part, or of what else image and arm disagree about
+    // Since the part was moved, or another mode took the place of an accepted pose; nothing where neither has happened.
+    // From then on every change of the mode counts.
+    std::optional<int> frames_since_move;
 };
 
 struct SightingOptions {
@@ -54,8 +56,9 @@ Sightings after_motion(Sightings sightings, const std::optional<Pose>& now_from_
 // How a fit follows the one before.
 enum class Continuity {
     kAsPredicted,
-    kContradicted,  // it is not where the arm's motion puts the part
-    kOtherMode,     // of the posterior: it says nothing of the motion
+    kContradicted,       // it is not where the arm's motion puts the part
+    kOtherMode,          // of the posterior: it says nothing of the motion
+    kOtherThanAccepted,  // the same, in the place of a pose that was accepted
 };
 
 // One more sighting at the present arm_from_camera, by an image's own fit.

@@ -75,6 +75,18 @@ TEST(Sightings, APushIsAMoveAndAConveyorOnlyInItsFirstFrame) {
     EXPECT_EQ(moved(0.0, 0.005), once);
 }
 
+TEST(Sightings, AnotherModeCountsAsAMoveOnceAPoseWasAccepted) {
+    const auto with = [](const Sightings& before, Continuity continuity) {
+        return with_sighting(before, fit_at(kWorldFromObject), continuity, kCentre, {});
+    };
+    Sightings sightings = with(with({}, Continuity::kOtherMode), Continuity::kOtherMode);
+    EXPECT_FALSE(sightings.frames_since_move.has_value());
+    sightings = with(sightings, Continuity::kOtherThanAccepted);
+    EXPECT_EQ(sightings.frames_since_move, 0);
+    sightings = with(with(sightings, Continuity::kAsPredicted), Continuity::kOtherMode);
+    EXPECT_EQ(sightings.frames_since_move, 0);
+}
+
 TEST(Sightings, FramesAreCountedSinceAMoveAlsoWhileTheCameraRests) {
     Sightings sightings;
     for (int frame = 0; frame < 10; ++frame) {
