@@ -104,7 +104,8 @@ TEST(Estimator, FindsTheObjectAgainWhereItWasPutDown) {
     Mask mask;
     const DepthImage image = test::render(*kPart, elsewhere, kCamera, 0.9F, &mask);
     UpdateResult result;
-    for (int frame = 0; frame < 5; ++frame)
+    // It is acted on when it has stood there for some frames.
+    for (int frame = 0; frame < 8; ++frame)
         result = estimator.update(make_observation(image, kCamera, mask), Pose::identity());
     EXPECT_LT(angle_between(result.camera_from_object.rotation, elsewhere.rotation), 0.02);
     EXPECT_EQ(result.verdict, Verdict::kAccept);
