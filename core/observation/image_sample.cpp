@@ -11,6 +11,7 @@ void validate(const RepeatedImageOptions& options) {
     check_option("repeated_image.columns", options.columns, 1, 10000);
     check_option("repeated_image.rows", options.rows, 1, 10000);
     check_option("repeated_image.min_measured", options.min_measured, 1, 1e9);
+    check_option("repeated_image.rest_pixels", options.rest_pixels, 0.0, 1e6);
     check_option("repeated_image.equal_share", options.equal_share, 0.0, 1.0);
 }
 
@@ -40,13 +41,12 @@ bool same_image(const ImageSample& a, const ImageSample& b, const RepeatedImageO
 
 namespace {
 
-// Whether a motion shifts no pixel by as much as a quarter.
-bool at_rest(const Pose& now_from_before, const Observation& observation) {
-    constexpr double kPixels = 0.25;
+// Whether a motion shifts pixels by less than can be told.
+bool at_rest(const Pose& now_from_before, const Observation& observation, double rest_pixels) {
     const Twist motion = log(now_from_before);
     const double angle_rad =
         motion.head<3>().norm() + motion.tail<3>().norm() / std::max(observation.mean_distance_m(), 1e-3);
-    return angle_rad * observation.camera().fx < kPixels;
+    return angle_rad * observation.camera().fx < rest_pixels;
 }
 
 }  // namespace
@@ -56,8 +56,10 @@ ImageMemory seen_again(const ImageMemory& before, const Observation& observation
     ImageMemory now{sample_of(observation, options), 0, {}};
     if (!same_image(before.sample, now.sample, options)) return now;
     const Pose moved = now_from_before.value_or(Pose{}) * before.now_from_sample;
-    if (before.repeats == 0 && now_from_before && at_rest(moved, observation)) return now;
-    return {before.sample, before.repeats + 1, moved};
+    const bool may_be_equal =
+        before.repeats == 0 && now_from_before && at_rest(moved, observation, options.rest_pixels);
+    // The motion adds up from the first of the equal images on, however slow it is.
+    return {before.sample, may_be_equal ? 0 : before.repeats + 1, moved};
 }
 
 }  // namespace nearpose

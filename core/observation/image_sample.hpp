@@ -14,6 +14,7 @@ struct RepeatedImageOptions {
     bool on = true;
     int columns = 80, rows = 60;  // of the sample
     int min_measured = 100;       // depths of the sample; fewer do not tell
+    double rest_pixels = 0.25;    // a camera that moves the image by less stands still
     double equal_share = 0.995;   // of the measured depths of two samples, in 0..1: the same image
 };
 

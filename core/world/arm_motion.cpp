@@ -59,8 +59,6 @@ Pose corrected(MotionMistake mistake, const Pose& motion, const Eigen::Quaternio
             return scaled(motion, 1e-3);
         case MotionMistake::kMetres:
             return scaled(motion, 1e3);
-        case MotionMistake::kTransposed:
-            return {motion.rotation.conjugate(), motion.translation};
         case MotionMistake::kTurned:
             return turned(motion, best_turn);
     }
@@ -144,8 +142,6 @@ const char* to_string(MotionMistake mistake) {
             return "as if the camera's translation were given in m where mm belong";
         case MotionMistake::kMetres:
             return "as if the camera's translation were given in mm where m belong";
-        case MotionMistake::kTransposed:
-            return "as if the camera's rotation were transposed";
         case MotionMistake::kTurned:
             return "as if the arm's frame were turned against the camera's";
     }

@@ -19,10 +19,9 @@ enum class MotionMistake {
     kFlipped,      // its rows are
     kMillimetres,  // the shift is given in metres where millimetres belong
     kMetres,       // the other way round
-    kTransposed,   // the rotations are transposed
     kTurned,       // by another turn: of the hand-eye calibration, or the inverse of the pose was given
 };
-inline constexpr int kNumMotionMistakes = 11;
+inline constexpr int kNumMotionMistakes = 10;
 
 // What the image moves like: "as if the arm's motion were inverted".
 const char* to_string(MotionMistake mistake);

@@ -37,8 +37,22 @@ struct SetupSigmas {
 
 struct StillWorldOptions {
     // A set-up as it should be, and one that is at fault.
-    SetupSigmas usual = {0.002, 1.0, 0.002, 0.002, 0.001, 0.1, 1e-6, 1e-6};
-    SetupSigmas faulty = {0.02, 10.0, 0.03, 0.03, 0.01, 2.0, 0.01, 0.003};
+    SetupSigmas usual = {.focal_length = 0.002,
+                         .principal_point_pixels = 1.0,
+                         .depth_scale = 0.002,
+                         .hand_eye_rad = 0.002,
+                         .hand_eye_m = 0.001,
+                         .time_offset_frames = 0.1,
+                         .turn_rad = 1e-6,
+                         .shift_m = 1e-6};
+    SetupSigmas faulty = {.focal_length = 0.02,
+                          .principal_point_pixels = 10.0,
+                          .depth_scale = 0.03,
+                          .hand_eye_rad = 0.03,
+                          .hand_eye_m = 0.01,
+                          .time_offset_frames = 2.0,
+                          .turn_rad = 0.01,
+                          .shift_m = 0.003};
     // Sightings of similar views share their errors: so many count as one.
     double sightings_per_error = 1.5;
     int min_sightings = 5;

@@ -66,6 +66,13 @@ TEST(ImageSample, ACameraAtRestMaySeeTheSameAgain) {
     EXPECT_EQ(repeats_of({one, one, one}, Pose{}), (std::vector<int>{0, 0, 0}));
 }
 
+TEST(ImageSample, ACameraThatCreepsIsNotAtRestForEver) {
+    const Observation one = noisy_wall(1);
+    // 0.1 mm a frame at 0.5 m is 0.06 pixels: a quarter is exceeded in the fifth frame after the first.
+    const Pose creeping{Eigen::Quaterniond::Identity(), {0.0001, 0.0, 0.0}};
+    EXPECT_EQ(repeats_of({one, one, one, one, one, one, one}, creeping), (std::vector<int>{0, 0, 0, 0, 0, 1, 2}));
+}
+
 TEST(ImageSample, TheMotionSinceTheImageAddsUp) {
     const Observation one = noisy_wall(1);
     ImageMemory memory;

@@ -57,10 +57,6 @@ TEST(ArmMotion, TheUsualMistakesAreNamed) {
         {MotionMistake::kFlipped, mirrored(1)},
         {MotionMistake::kMillimetres, scaled(1e3)},
         {MotionMistake::kMetres, scaled(1e-3)},
-        {MotionMistake::kTransposed,
-         [](const Pose& m) {
-             return Pose{m.rotation.conjugate(), m.translation};
-         }},
         {MotionMistake::kTurned, [&](const Pose& m) { return hand_eye.inverse() * m * hand_eye; }},
     };
     for (const Case& usual : cases) {
