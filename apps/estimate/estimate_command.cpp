@@ -4,24 +4,23 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
 #include <memory>
-#include <numbers>
 #include <utility>
 
 #include "apps/base/console.hpp"
 #include "apps/base/number_text.hpp"
-#include "apps/data_set/bop_models.hpp"
-#include "apps/data_set/pose_file.hpp"
 #include "apps/data_set/result_csv.hpp"
 #include "apps/estimate/estimate_options.hpp"
 #include "apps/estimate/estimate_outputs.hpp"
 #include "apps/estimate/unit_check.hpp"
 #include "apps/estimate/verdict_summary.hpp"
-#include "apps/part_model/model_symmetries.hpp"
 #include "apps/runs/estimator_setup.hpp"
+#include "apps/runs/estimator_start.hpp"
 #include "apps/runs/input_doubts.hpp"
 #include "apps/runs/run_folder.hpp"
+#include "apps/set_up/calibration.hpp"
+#include "apps/set_up/corrected_source.hpp"
+#include "apps/set_up/setup_file.hpp"
 #include "core/estimator.hpp"
 
 namespace nearpose::program {
@@ -45,60 +44,6 @@ JudgedFrame judged(int frame_id, const UpdateResult& result) {
 
 bool is_repeated(const UpdateResult& result) {
     return !result.missing.empty() && result.missing.front().requirement == Requirement::kNewImage;
-}
-
-std::optional<data_set::ModelInfo> declared_info(const ModelOptions& model) {
-    const std::filesystem::path file = model.models / "models_info.json";
-    if (model.models.empty() || !std::filesystem::exists(file)) return std::nullopt;
-    const std::map<int, data_set::ModelInfo> models = data_set::read_models_info(file);
-    const auto found = models.find(model.object);
-    return found == models.end() ? std::nullopt : std::optional(found->second);
-}
-
-// The declared ones, and what the part may be mistaken for besides, which BOP's files do not hold.
-Symmetries with_near(const Symmetries& declared, const Symmetries& found) {
-    Symmetries symmetries = declared;
-    for (const Pose& turn : found.near_symmetries)
-        if (!contains(declared, turn)) symmetries.near_symmetries.push_back(turn);
-    return symmetries;
-}
-
-// The user is told which, where there are any.
-Symmetries choose_symmetries(const EstimateOptions& options, const Mesh& mesh, const SharedOptions& shared) {
-    if (options.symmetries == "none") return {};
-    const std::optional<data_set::ModelInfo> info = declared_info(options.model);
-    const Symmetries declared = info ? declared_symmetries(*info) : Symmetries{};
-    const bool take_declared = options.symmetries == "declared" || !declared.empty();
-    const Symmetries found = options.symmetries == "declared" ? Symmetries{} : find_symmetries(mesh);
-    const Symmetries symmetries = take_declared ? with_near(declared, found) : found;
-    if (!symmetries.empty() || !symmetries.near_symmetries.empty()) {
-        const std::string source = take_declared ? "of models_info.json" : "found from the mesh";
-        print_notice("symmetries " + source + ": " + describe(symmetries), shared.quiet);
-    }
-    return symmetries;
-}
-
-Tolerance tolerance_of(const EstimateOptions& options) {
-    return {1e-3 * options.tolerance_mm, options.tolerance_deg * std::numbers::pi / 180.0};
-}
-
-PoseEstimator start_estimator(const EstimateOptions& options, const Mesh& mesh, const SharedOptions& shared) {
-    EstimatorSetup setup;
-    setup.method = options.method;
-    setup.views = options.views;
-    setup.particles = options.particles.value_or(setup.particles);
-    setup.adaptive = !options.particles;
-    setup.budget_s = 1e-3 * options.budget_ms;
-    setup.threads = options.threads;
-    setup.seed = options.seed;
-    setup.symmetries = choose_symmetries(options, mesh, shared);
-    setup.tolerance = tolerance_of(options);
-    PoseEstimator made = make_estimator(setup, make_view_generator(setup, mesh));
-    if (!options.initial_pose.empty()) {
-        made.reset(read_pose_file(options.initial_pose),
-                   {options.initial_sigma_deg * std::numbers::pi / 180.0, 1e-3 * options.initial_sigma_mm});
-    }
-    return made;
 }
 
 RunDescription run_description(const EstimateOptions& options, const FrameSource& source) {
@@ -131,14 +76,6 @@ void check_motion(const EstimateOptions& options, const FrameSource& source) {
     }
     throw std::runtime_error(options.scene.string() +
                              ": --trajectory-frame world needs cam_R_w2c and cam_t_w2c in scene_camera.json");
-}
-
-std::optional<Pose> control_of(const FrameSource& source, std::size_t index) {
-    if (index == 0) return std::nullopt;
-    const std::optional<Pose>& now = source.frames()[index].camera_from_world;
-    const std::optional<Pose>& before = source.frames()[index - 1].camera_from_world;
-    if (!now || !before) return std::nullopt;
-    return *now * before->inverse();
 }
 
 // What a frame that could be read had to offer. The observation has taken its image over, so it is read again.
@@ -258,21 +195,47 @@ int exit_code(const Tally& tally) {
     return kFramesUnread;
 }
 
-int estimate(const EstimateOptions& given, const SharedOptions& shared) {
-    check(given);
-    EstimateOptions options = given;
-    options.outputs = with_run_folder(given.outputs);
-    const std::unique_ptr<FrameSource> source = open_source(options);
-    check_motion(options, *source);
+// The recording as it was given, or corrected by a file or by itself. The user is told what was found.
+std::shared_ptr<const FrameSource> with_right_setup(const std::shared_ptr<const FrameSource>& given,
+                                                    const EstimateOptions& options, const Mesh& mesh,
+                                                    const EstimatorSetup& setup,
+                                                    const std::shared_ptr<const ViewGenerator>& views,
+                                                    const SharedOptions& shared) {
+    if (!options.set_up.empty()) return corrected_source(given, read_setup_file(options.set_up));
+    if (!options.self_calibrate) return given;
+    CalibrationOptions calibration;
+    Progress progress("calibrate", calibration.passes * static_cast<int>(given->frames().size()), shared.quiet);
+    const auto go_on = [&] {
+        progress.step();
+        return !interrupted();
+    };
+    const Calibration found = calibrate(given, extent_of(mesh).centre_in_object(), setup, views, go_on, calibration);
+    if (!found.solved || found.mistake != MotionMistake::kNone) {
+        print_notice("--self-calibrate: the recording does not show its set-up; it is taken as given", shared.quiet);
+        return given;
+    }
+    print_notice("--self-calibrate: " + in_one_line(found), shared.quiet);
+    return corrected_source(given, found.errors);
+}
+
+int estimate(const EstimateOptions& asked, const SharedOptions& shared) {
+    check(asked);
+    EstimateOptions options = asked;
+    options.outputs = with_run_folder(asked.outputs);
+    const std::shared_ptr<const FrameSource> given = open_source(options);
+    check_motion(options, *given);
     const Mesh mesh = load_model(options.model, shared);
-    PoseEstimator estimator = start_estimator(options, mesh, shared);
+    const EstimatorSetup setup = setup_of(options, mesh, shared);
+    const std::shared_ptr<const ViewGenerator> views = make_view_generator(setup, mesh);
+    const std::shared_ptr<const FrameSource> source = with_right_setup(given, options, mesh, setup, views, shared);
+    PoseEstimator estimator = start_estimator(setup, views, options);
     EstimateOutputs outputs(options.outputs, run_description(options, *source), mesh);
     if (!options.outputs.run.empty()) write_run_record(options.outputs.run, options, source->scene_id());
     for (const data_set::Notice& notice : source->notices().all()) print_notice(to_text(notice), shared.quiet);
     const std::string data_set_name =  // <data set>/test/<scene>
         std::filesystem::absolute(options.scene / "../../.").lexically_normal().parent_path().filename().string();
-    if (const auto notice = data_set::bop_file_name_notice(given.outputs.out, data_set_name);
-        notice && !given.outputs.out.empty()) {
+    if (const auto notice = data_set::bop_file_name_notice(asked.outputs.out, data_set_name);
+        notice && !asked.outputs.out.empty()) {
         print_notice(*notice, shared.quiet);
     }
 

@@ -12,6 +12,7 @@
 #include "apps/base/file_io.hpp"
 #include "apps/base/nearest_word.hpp"
 #include "apps/base/version.hpp"
+#include "apps/calibrate/calibrate_command.hpp"
 #include "apps/compare/compare_command.hpp"
 #include "apps/estimate/estimate_command.hpp"
 #include "apps/evaluate/evaluate_command.hpp"
@@ -129,6 +130,7 @@ struct Shell {
         add_simulate_command(app, shared, run);
         add_render_command(app, shared, run);
         add_evaluate_command(app, shared, run);
+        add_calibrate_command(app, shared, run);
         add_compare_command(app, shared, run);
         add_import_command(app, shared, run);
         add_report_command(app, shared, run);

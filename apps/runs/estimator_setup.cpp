@@ -136,6 +136,7 @@ std::shared_ptr<const PoseSolver> make_solver(const EstimatorSetup& setup) {
 PoseEstimator make_estimator(const EstimatorSetup& setup, std::shared_ptr<const ViewGenerator> views) {
     EstimatorOptions options;
     options.method = make_method(setup);
+    options.method.arm_check.sightings.max_count = setup.max_sightings;
     options.num_particles = setup.particles;
     options.budget_s = setup.budget_s;
     options.num_threads = setup.threads;

@@ -68,8 +68,9 @@ struct EstimatorSetup {
     std::string without = "nothing";
     std::optional<int> view_samples;  // of the surface; the rasterisers' alone
 
-    Symmetries symmetries;  // of the part
-    Tolerance tolerance;    // of the verdict
+    Symmetries symmetries;                            // of the part
+    Tolerance tolerance;                              // of the verdict
+    int max_sightings = SightingOptions{}.max_count;  // kept, to compare image and arm
 
     // For whoever feeds the estimator.
     bool use_mask = true;

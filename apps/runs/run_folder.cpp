@@ -41,6 +41,8 @@ Json options_json(const EstimateOptions& options) {
             {"mask-first-frame", options.mask_first_frame},
             {"mask-index", number_json(options.mask_index)},
             {"no-control", options.no_control},
+            {"set-up", path_json(options.set_up)},
+            {"self-calibrate", options.self_calibrate},
             {"first", number_json(options.first)},
             {"last", number_json(options.last)},
             {"scene-id", number_json(options.scene_id)},
@@ -107,6 +109,8 @@ EstimateOptions options_of(const JsonValue& json) {
     options.mask_first_frame = flag_of(json, "mask-first-frame");
     options.mask_index = integer_of(json, "mask-index");
     options.no_control = flag_of(json, "no-control");
+    options.set_up = text_of(json, "set-up");
+    options.self_calibrate = flag_of(json, "self-calibrate");
     options.first = integer_of(json, "first");
     options.last = integer_of(json, "last");
     options.scene_id = integer_of(json, "scene-id");

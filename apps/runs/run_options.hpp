@@ -31,6 +31,8 @@ struct EstimateOptions {
     int threads = EstimatorOptions{}.num_threads;
     std::uint64_t seed = EstimatorOptions{}.seed;
     bool no_mask = false, mask_first_frame = false, no_control = false;
+    std::filesystem::path set_up;  // errors of the set-up, to be corrected; empty: it is as given
+    bool self_calibrate = false;   // or by the recording itself
     std::optional<int> mask_index, first, last, scene_id;
     double fps = 30.0;
     std::filesystem::path initial_pose;
@@ -41,5 +43,10 @@ struct EstimateOptions {
 
 // The frames that they name.
 std::unique_ptr<FrameSource> open_source(const EstimateOptions& options);
+
+// Those of the recording and of the part, of seed and threads.
+void add_input_options(CLI::App& command, EstimateOptions& options);
+// Throws BadUse where they do not fit together.
+void check_input(const EstimateOptions& options);
 
 }  // namespace nearpose::program

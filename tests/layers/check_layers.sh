@@ -82,8 +82,8 @@ check_room_order core base 'view_generator correspondences' pose_solver observat
     method options result update estimator
 
 # Rooms that several commands share, then one room a command, then the list of the commands.
-check_room_order apps base data_set part_model depth_sensor scenes error_measures tables pictures runs view_quality \
-    'compare estimate evaluate experiment fit_sensor import render report simulate' program main
+check_room_order apps base data_set part_model depth_sensor scenes error_measures tables pictures runs set_up view_quality \
+    'calibrate compare estimate evaluate experiment fit_sensor import render report simulate' program main
 
 for library in embree assimp flann omp; do
     count=$(grep -lE "^#[[:space:]]*include[[:space:]]*<$library" "${core[@]}" "${raycast[@]}" | wc -l)

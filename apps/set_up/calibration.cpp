@@ -1,0 +1,112 @@
+#include "apps/set_up/calibration.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+#include <vector>
+
+#include "apps/base/degrees.hpp"
+#include "apps/base/number_text.hpp"
+#include "apps/runs/estimator_start.hpp"
+#include "apps/set_up/corrected_source.hpp"
+
+namespace nearpose::program {
+namespace {
+
+// The estimator's sightings, each with its motion a frame of the usual length.
+struct Tracked {
+    std::vector<Sighting> sightings;
+    MotionMistake mistake = MotionMistake::kNone;
+    bool complete = false;
+};
+
+FrameData read_or_empty(const FrameSource& source, std::size_t index) {
+    try {
+        return source.load(index);
+    } catch (const std::exception&) {
+        return {};
+    }
+}
+
+double step_s(const FrameSource& source, std::size_t index) {
+    return index == 0 ? 0.0 : source.frames()[index].stamp_s - source.frames()[index - 1].stamp_s;
+}
+
+// Whether the last sighting is of the present frame.
+bool is_of_now(const Sightings& sightings) {
+    return !sightings.kept.empty() &&
+           sightings.kept.back().arm_from_camera.translation == sightings.arm_from_camera.translation &&
+           sightings.kept.back().arm_from_camera.rotation.coeffs() == sightings.arm_from_camera.rotation.coeffs();
+}
+
+Tracked track(const FrameSource& source, double frame_s, PoseEstimator estimator, const FrameDone& frame_done) {
+    Tracked tracked;
+    std::vector<double> steps_s;  // parallel to the sightings: the time from the frame before
+    for (std::size_t index = 0; index < source.frames().size(); ++index) {
+        const Observation observation = observe_frame(source.frames()[index], read_or_empty(source, index));
+        const UpdateResult result = estimator.update(observation, control_of(source, index));
+        const Sightings& sightings = estimator.belief().sightings;
+        steps_s.resize(sightings.kept.size(), frame_s);
+        if (is_of_now(sightings)) steps_s.back() = step_s(source, index);
+        if (result.arm.motion.mistake != MotionMistake::kNone) tracked.mistake = result.arm.motion.mistake;
+        if (!frame_done()) return tracked;
+    }
+    tracked.sightings = estimator.belief().sightings.kept;
+    for (std::size_t k = 0; k < tracked.sightings.size(); ++k)
+        if (steps_s[k] > 0.0) tracked.sightings[k].camera_motion *= frame_s / steps_s[k];
+    tracked.complete = true;
+    return tracked;
+}
+
+bool is_done(const SetupCalibration& left, double done_sigmas) {
+    const SetupVector sigma = left.covariance.diagonal().cwiseSqrt();
+    return (left.errors.cwiseAbs().array() < done_sigmas * sigma.array()).all();
+}
+
+}  // namespace
+
+Calibration calibrate(const std::shared_ptr<const FrameSource>& given, const Eigen::Vector3d& centre_in_object,
+                      const EstimatorSetup& setup, const std::shared_ptr<const ViewGenerator>& views,
+                      const FrameDone& frame_done, const CalibrationOptions& options) {
+    constexpr int kMostSightings = 10000;
+    EstimatorSetup keeping_all = setup;
+    keeping_all.max_sightings = std::min(static_cast<int>(given->frames().size()) + 2, kMostSightings);
+    const PoseEstimator start = make_estimator(keeping_all, views);
+    Calibration calibration;
+    calibration.frames = static_cast<int>(given->frames().size());
+    calibration.frame_s = usual_step_s(*given);
+    calibration.prior_sigma = options.prior_sigma;
+    calibration.sigma = options.prior_sigma;
+    const double frame_s = calibration.frame_s > 0.0 ? calibration.frame_s : 1.0;
+    for (int pass = 0; pass < options.passes; ++pass) {
+        const Tracked tracked = track(*corrected_source(given, calibration.errors), frame_s, start, frame_done);
+        calibration.mistake = tracked.mistake;
+        if (!tracked.complete) return calibration;
+        SetupCalibrationOptions solver;
+        solver.prior_sigma = options.prior_sigma;
+        solver.prior_mean = -in_order(calibration.errors, frame_s);  // the whole error is about zero
+        const SetupCalibration left = calibrate_setup(tracked.sightings, centre_in_object, solver);
+        calibration.sightings = left.sightings;
+        if (!left.solved) return calibration;
+        calibration.errors = composed(calibration.errors, errors_of(left.errors, frame_s));
+        calibration.sigma = left.covariance.diagonal().cwiseSqrt();
+        calibration.unit_sigma = left.unit_sigma;
+        calibration.solved = true;
+        if (is_done(left, options.done_sigmas)) break;
+    }
+    return calibration;
+}
+
+std::string in_one_line(const Calibration& calibration) {
+    using data_set::format_fixed;
+    const SetupErrors& errors = calibration.errors;
+    const double turn_rad = angle_between(Eigen::Quaterniond::Identity(), errors.given_from_camera.rotation);
+    return "off by: focal length " + format_fixed(1e2 * errors.focal_length, 2) + " %, principal point " +
+           format_fixed(errors.principal_point_pixels.norm(), 1) + " px, depth scale " +
+           format_fixed(1e2 * errors.depth_scale, 2) + " %, hand-eye " +
+           format_fixed(1e3 * errors.given_from_camera.translation.norm(), 1) + " mm, " +
+           format_fixed(kDegrees * turn_rad, 2) + " degrees, time " + format_fixed(1e3 * errors.time_offset_s, 1) +
+           " ms";
+}
+
+}  // namespace nearpose::program

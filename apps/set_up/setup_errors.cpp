@@ -1,0 +1,49 @@
+#include "apps/set_up/setup_errors.hpp"
+
+#include <Eigen/Geometry>
+
+namespace nearpose::program {
+
+SetupVector in_order(const SetupErrors& errors, double frame_s) {
+    const Eigen::AngleAxisd turn(errors.given_from_camera.rotation);
+    SetupVector vector;
+    vector << errors.focal_length, errors.principal_point_pixels, errors.depth_scale, turn.angle() * turn.axis(),
+        errors.given_from_camera.translation, errors.time_offset_s / frame_s;
+    return vector;
+}
+
+SetupErrors errors_of(const SetupVector& vector, double frame_s) {
+    const Eigen::Vector3d turn = vector.segment<3>(kHandEyeTurn);
+    SetupErrors errors;
+    errors.focal_length = vector[kFocalLengthError];
+    errors.principal_point_pixels = vector.segment<2>(kImageColumns);
+    errors.depth_scale = vector[kDepthScaleError];
+    if (turn.norm() > 0.0) errors.given_from_camera.rotation = Eigen::AngleAxisd(turn.norm(), turn.normalized());
+    errors.given_from_camera.translation = vector.segment<3>(kHandEyeShift);
+    errors.time_offset_s = vector[kTimeOffset] * frame_s;
+    return errors;
+}
+
+SetupErrors composed(const SetupErrors& first, const SetupErrors& left) {
+    SetupErrors both;
+    both.focal_length = (1.0 + first.focal_length) * (1.0 + left.focal_length) - 1.0;
+    both.principal_point_pixels = first.principal_point_pixels + left.principal_point_pixels;
+    both.depth_scale = (1.0 + first.depth_scale) * (1.0 + left.depth_scale) - 1.0;
+    both.given_from_camera = first.given_from_camera * left.given_from_camera;
+    both.time_offset_s = first.time_offset_s + left.time_offset_s;
+    return both;
+}
+
+PinholeCamera corrected(PinholeCamera given, const SetupErrors& errors) {
+    given.fx /= 1.0 + errors.focal_length;
+    given.fy /= 1.0 + errors.focal_length;
+    given.cx -= errors.principal_point_pixels.x();
+    given.cy -= errors.principal_point_pixels.y();
+    return given;
+}
+
+Pose corrected(const Pose& given_from_world, const SetupErrors& errors) {
+    return errors.given_from_camera.inverse() * given_from_world;
+}
+
+}  // namespace nearpose::program

@@ -1,0 +1,32 @@
+// By how much what a recording says of its set-up differs from the truth.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/base/camera.hpp"
+#include "core/base/pose.hpp"
+#include "optim/setup_calibration.hpp"
+
+namespace nearpose::program {
+
+// What was given is larger than the truth by so much. Zeros: the set-up is as it is given.
+struct SetupErrors {
+    double focal_length = 0.0;  // share of itself, of both axes
+    Eigen::Vector2d principal_point_pixels = Eigen::Vector2d::Zero();
+    double depth_scale = 0.0;    // share of itself
+    Pose given_from_camera;      // of the hand-eye calibration: how the camera lies where the arm says that it is
+    double time_offset_s = 0.0;  // the arm's poses are so much later than their images
+};
+
+// In the order of the unknowns; a frame takes `frame_s`.
+SetupVector in_order(const SetupErrors& errors, double frame_s);
+SetupErrors errors_of(const SetupVector& vector, double frame_s);
+
+// Errors that were found first, and then those that were left after their correction.
+SetupErrors composed(const SetupErrors& first, const SetupErrors& left);
+
+// What is true, from what was given.
+PinholeCamera corrected(PinholeCamera given, const SetupErrors& errors);
+Pose corrected(const Pose& given_from_world, const SetupErrors& errors);  // gives camera_from_world
+
+}  // namespace nearpose::program
