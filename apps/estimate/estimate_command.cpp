@@ -14,6 +14,7 @@
 #include "apps/data_set/bop_models.hpp"
 #include "apps/data_set/pose_file.hpp"
 #include "apps/data_set/result_csv.hpp"
+#include "apps/estimate/camera_motion.hpp"
 #include "apps/estimate/estimate_options.hpp"
 #include "apps/estimate/estimate_outputs.hpp"
 #include "apps/estimate/unit_check.hpp"
@@ -133,14 +134,6 @@ void check_motion(const EstimateOptions& options, const FrameSource& source) {
                              ": --trajectory-frame world needs cam_R_w2c and cam_t_w2c in scene_camera.json");
 }
 
-std::optional<Pose> control_of(const FrameSource& source, std::size_t index) {
-    if (index == 0) return std::nullopt;
-    const std::optional<Pose>& now = source.frames()[index].camera_from_world;
-    const std::optional<Pose>& before = source.frames()[index - 1].camera_from_world;
-    if (!now || !before) return std::nullopt;
-    return *now * before->inverse();
-}
-
 // What a frame that could be read had to offer. The observation has taken its image over, so it is read again.
 std::string why_unseen(const FrameSource& source, std::size_t index, const Observation& observation) {
     if (observation.num_candidates() > 0) return std::to_string(observation.num_candidates()) + " measured points";
@@ -188,15 +181,16 @@ void note_scale(const FrameInfo& frame, const FrameData& data, const Mesh& mesh,
 void run_frame(const RunContext& run, std::size_t index, PoseEstimator& estimator, EstimateOutputs& outputs,
                Tally& tally) {
     const FrameInfo& frame = run.source.frames()[index];
-    FrameReport report{frame.id, frame.stamp_s, 0.0, {}};
+    FrameReport report{frame.id, frame.stamp_s, 0.0, {}, {}};
     FrameData data = read_frame(run.source, index, report);
     for (const std::string& text : data.notices) note(frame.id, text, "", run.shared, tally);
     note_scale(frame, data, run.mesh, run.shared, tally);
     const auto begin = std::chrono::steady_clock::now();
     const Observation observation = observe_frame(frame, std::move(data));
     const UpdateResult result =
-        estimator.update(observation, run.options.no_control ? std::nullopt : control_of(run.source, index));
+        estimator.update(observation, run.options.no_control ? std::nullopt : control_of(run.source.frames(), index));
     report.time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    report.in_world = place_of(run.source.frames(), index, result);
 
     const bool predicted = result.status == UpdateStatus::kPredicted;
     const std::string consequence = predicted ? "; the prediction stands in" : "; there is no pose yet";
