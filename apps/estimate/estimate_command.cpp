@@ -10,6 +10,7 @@
 #include "apps/base/console.hpp"
 #include "apps/base/number_text.hpp"
 #include "apps/data_set/result_csv.hpp"
+#include "apps/estimate/camera_motion.hpp"
 #include "apps/estimate/estimate_options.hpp"
 #include "apps/estimate/estimate_outputs.hpp"
 #include "apps/estimate/unit_check.hpp"
@@ -125,15 +126,16 @@ void note_scale(const FrameInfo& frame, const FrameData& data, const Mesh& mesh,
 void run_frame(const RunContext& run, std::size_t index, PoseEstimator& estimator, EstimateOutputs& outputs,
                Tally& tally) {
     const FrameInfo& frame = run.source.frames()[index];
-    FrameReport report{frame.id, frame.stamp_s, 0.0, {}};
+    FrameReport report{frame.id, frame.stamp_s, 0.0, {}, {}};
     FrameData data = read_frame(run.source, index, report);
     for (const std::string& text : data.notices) note(frame.id, text, "", run.shared, tally);
     note_scale(frame, data, run.mesh, run.shared, tally);
     const auto begin = std::chrono::steady_clock::now();
     const Observation observation = observe_frame(frame, std::move(data));
     const UpdateResult result =
-        estimator.update(observation, run.options.no_control ? std::nullopt : control_of(run.source, index));
+        estimator.update(observation, run.options.no_control ? std::nullopt : control_of(run.source.frames(), index));
     report.time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    report.in_world = place_of(run.source.frames(), index, result);
 
     const bool predicted = result.status == UpdateStatus::kPredicted;
     const std::string consequence = predicted ? "; the prediction stands in" : "; there is no pose yet";

@@ -112,6 +112,24 @@ Json observability_of(const Observability& observability) {
     return {{"sigmas_m", sigmas}, {"weak", observability.weak}};
 }
 
+// The keys of the pose in the camera, in the frame that the arm's poses are given in.
+Json in_world_of(const PlaceInWorld& place) {
+    return {{"translation_m", translation_m(place.world_from_object)},
+            {"quaternion_xyzw", quaternion_xyzw(place.world_from_object)},
+            {"covariance", row_major(place.covariance)},
+            {"covariance_ros", row_major(ros_covariance(place.covariance, place.world_from_object))}};
+}
+
+// What the covariance in the world takes the camera's pose to be off by: standard deviations.
+Json usual_setup(const ArmCheckOptions& arm) {
+    const SetupSigmas& usual = arm.still_world.usual;
+    return {{"hand_eye_rad", usual.hand_eye_rad},
+            {"hand_eye_m", usual.hand_eye_m},
+            {"time_offset_frames", usual.time_offset_frames},
+            {"arm_rotation_rad", arm.sightings.arm_rotation_rad},
+            {"arm_translation_m", arm.sightings.arm_translation_m}};
+}
+
 // Six significant digits: micrometres at a metre, in half the bytes of all digits.
 void append_rounded(std::string& text, double value) {
     std::array<char, 32> digits{};
@@ -126,10 +144,10 @@ std::string dump(const Json& object) {
 
 }  // namespace
 
-Matrix6d ros_covariance(const Matrix6d& covariance, const Pose& camera_from_object) {
+Matrix6d ros_covariance(const Matrix6d& covariance, const Pose& frame_from_object) {
     Matrix6d map = Matrix6d::Zero();
-    map.topRightCorner<3, 3>() = camera_from_object.rotation_matrix();
-    map.bottomLeftCorner<3, 3>() = camera_from_object.rotation_matrix();
+    map.topRightCorner<3, 3>() = frame_from_object.rotation_matrix();
+    map.bottomLeftCorner<3, 3>() = frame_from_object.rotation_matrix();
     return map * covariance * map.transpose();
 }
 
@@ -143,6 +161,9 @@ std::string first_log_line(const RunDescription& run) {
          {"quaternion_order", "x y z w"},
          {"covariance_order", "rotation x y z, translation x y z; of camera_from_object * exp(twist), object axes"},
          {"covariance_ros_order", "x y z, rotation x y z; axes of the camera frame"},
+         {"world",
+          "that of cam_R_w2c, cam_t_w2c; world_from_object has the keys of the pose, covariance_ros in its axes"},
+         {"world_sigmas", usual_setup({})},
          {"input", run.input},
          {"model", run.model},
          {"scene_id", run.scene_id},
@@ -208,6 +229,7 @@ std::string frame_log_line(const FrameReport& frame, const UpdateResult& result)
         line["observability"] = observability_of(result.observability);
         line["cost"] = result.cost;
         line["arm"] = arm_of(result.arm);
+        if (frame.in_world) line["world_from_object"] = in_world_of(*frame.in_world);
     }
     line["effective_sample_size"] = result.effective_sample_size;
     line["effort"] = effort_of(result.effort);

@@ -2,9 +2,11 @@
 // are frames.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/estimator.hpp"
+#include "core/world/place_in_world.hpp"
 
 namespace nearpose::program {
 
@@ -22,14 +24,15 @@ struct RunDescription {
 struct FrameReport {
     int frame_id = 0;
     double stamp_s = 0.0;
-    double time_s = 0.0;  // wall time of the frame, without decoding its files
-    std::string error;    // why it could not be read; empty where it could
+    double time_s = 0.0;                   // wall time of the frame, without decoding its files
+    std::string error;                     // why it could not be read; empty where it could
+    std::optional<PlaceInWorld> in_world;  // where the camera's pose is known
 };
 
-// Covariance as ROS has it: of (x y z, rotation about x y z) in the fixed axes of the camera frame, from that of the
-// right perturbation (rotation first, object axes) of camera_from_object. For small noise: A C A^T, A = [[0, R], [R,
-// 0]].
-Matrix6d ros_covariance(const Matrix6d& covariance, const Pose& camera_from_object);
+// Covariance as ROS has it: of (x y z, rotation about x y z) in the fixed axes of the frame that the pose leads to, the
+// camera's or the world's, from that of the right perturbation (rotation first, object axes) of the pose. For small
+// noise: A C A^T, A = [[0, R], [R, 0]].
+Matrix6d ros_covariance(const Matrix6d& covariance, const Pose& frame_from_object);
 
 std::string first_log_line(const RunDescription& run);
 // Without a pose the keys that describe one are left out.

@@ -7,6 +7,7 @@
 #include "apps/base/text_split.hpp"
 #include "apps/data_set/json_file.hpp"
 #include "apps/runs/verdict_tally.hpp"
+#include "core/world/arm_motion.hpp"
 
 namespace nearpose::report {
 namespace {
@@ -59,6 +60,14 @@ std::vector<LoggedLack> lacks_of(const JsonValue& line) {
     return lacks;
 }
 
+LoggedArm arm_of(const JsonValue& value) {
+    LoggedArm arm{value.at("moves").text(), value.at("cause").text(), value.at("off_share").number(),
+                  value.at("error_bound_m").number()};
+    if (arm.moves == to_string(MotionMistake::kNone)) arm.moves.clear();
+    if (arm.cause == to_string(Cause::kNone)) arm.cause.clear();
+    return arm;
+}
+
 LoggedFrame frame_of(const JsonValue& line) {
     LoggedFrame frame;
     frame.frame_id = line.at("frame").integer();
@@ -73,6 +82,9 @@ LoggedFrame frame_of(const JsonValue& line) {
         frame.score = line.at("score").number();
         if (const auto agreement = line.find("agreement")) frame.agreement = agreement->number();
         frame.cost = line.at("cost").number();
+        if (const auto world = line.find("world_from_object"))
+            frame.in_world = {pose_of(*world), matrix_of(world->at("covariance"))};
+        if (const auto arm = line.find("arm")) frame.arm = arm_of(*arm);
     }
     frame.effective_sample_size = line.at("effective_sample_size").number();
     frame.points_observed = line.at("points_observed").integer();

@@ -10,12 +10,20 @@
 
 #include "core/base/pose.hpp"
 #include "core/evidence/verdict.hpp"
+#include "core/world/place_in_world.hpp"
 
 namespace nearpose::report {
 
 // What kept a frame from being accepted, as its log says it.
 struct LoggedLack {
     std::string requirement, text;
+};
+
+// What image and arm say against each other.
+struct LoggedArm {
+    std::string moves;  // "as if the arm's motion were inverted"; empty: as the arm says
+    std::string cause;  // of a part that seems to move; empty: it stands still
+    double off_share = 0.0, error_bound_m = 0.0;
 };
 
 struct LoggedFrame {
@@ -27,6 +35,8 @@ struct LoggedFrame {
     std::optional<Pose> camera_from_object;
     std::optional<Matrix6d> covariance;
     std::optional<double> score, agreement, cost;  // the oldest logs do not have the agreement
+    std::optional<PlaceInWorld> in_world;          // where the camera's pose was known; older logs do not have it
+    std::optional<LoggedArm> arm;                  // nor this
     double effective_sample_size = 0.0;
     int points_observed = 0;
     bool resampled = false, mode_replaced = false;

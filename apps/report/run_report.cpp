@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "apps/data_set/png_file.hpp"
+#include "apps/report/arm_figures.hpp"
 #include "apps/report/cloud_sample.hpp"
 #include "apps/report/depth_picture.hpp"
 #include "apps/report/quantised.hpp"
@@ -162,6 +163,7 @@ Report run_report(const std::filesystem::path& folder, const RunReportOptions& o
                        {"title", title},
                        {"run", run_json(input.record, input)},
                        {"figures", figures_json(input, errors, options.burn_in)},
+                       {"arm", arm_json(input.log, model.extent().centre_in_object())},
                        {"model", model_json(input.mesh)},
                        {"frames", frames}};
     return {title + " - nearpose", data.dump(-1, ' ', false, Json::error_handler_t::replace)};

@@ -1,6 +1,7 @@
-// Bundles the page's script and style sheet: node build.mjs SOURCE_FOLDER OUT_FOLDER
+// Bundles the page's script and style sheet, and writes the policy that allows these two: node build.mjs SOURCE_FOLDER OUT_FOLDER
 // Runs where node_modules is (the build folder); the sources stay where they are.
-import { readFileSync } from 'node:fs';
+import { createHash } from 'node:crypto';
+import { readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import esbuild from 'esbuild';
 
@@ -25,3 +26,9 @@ await esbuild.build({
   banner: { js: `/*! This page contains:\n\n${licences.join('\n\n')}\n*/` },
   logLevel: 'warning',
 });
+
+// What the page may do (its Content-Security-Policy): run this script, use this style, and show images that it holds.
+// Texts of other people's files that got into it as markup could do nothing.
+const hash = (file) => `'sha256-${createHash('sha256').update(readFileSync(path.join(out, file))).digest('base64')}'`;
+writeFileSync(path.join(out, 'viewer.policy'), ["default-src 'none'", `script-src ${hash('viewer.js')}`,
+  `style-src ${hash('viewer.css')}`, 'img-src data:', "base-uri 'none'", "form-action 'none'"].join('; '));

@@ -1,5 +1,5 @@
 # cmake -DNODE= -DNPM= -DSOURCE=apps/viewer -DBUILD=folder -DREPORT=AUTO|ON -P bundle.cmake
-# Writes viewer.js and viewer.css into BUILD; empty ones where npm cannot install and REPORT is AUTO. Packages are
+# Writes viewer.js, viewer.css and viewer.policy into BUILD; empty ones where npm cannot install and REPORT is AUTO. Packages are
 # installed when the lock file changed, never into the source tree.
 foreach(file package.json package-lock.json build.mjs)
   file(COPY_FILE ${SOURCE}/${file} ${BUILD}/${file} ONLY_IF_DIFFERENT)
@@ -12,6 +12,7 @@ function(leave_out problem)
   message("the report is left out: ${problem}")
   file(WRITE ${BUILD}/viewer.js "")
   file(WRITE ${BUILD}/viewer.css "")
+  file(WRITE ${BUILD}/viewer.policy "")
 endfunction()
 
 file(SHA256 ${BUILD}/package-lock.json wanted)

@@ -5,7 +5,7 @@ set_property(CACHE NEARPOSE_REPORT PROPERTY STRINGS AUTO ON OFF)
 
 set(viewer_source ${CMAKE_CURRENT_SOURCE_DIR}/viewer)
 set(viewer_build ${CMAKE_CURRENT_BINARY_DIR}/viewer)
-set(viewer_files ${viewer_build}/viewer.js ${viewer_build}/viewer.css)
+set(viewer_files ${viewer_build}/viewer.js ${viewer_build}/viewer.css ${viewer_build}/viewer.policy)
 file(MAKE_DIRECTORY ${viewer_build})
 if(NEARPOSE_REPORT)
   find_program(NEARPOSE_NODE NAMES node nodejs)
@@ -48,6 +48,8 @@ file(GENERATE OUTPUT ${embedded_viewer} CONTENT
     .global nearpose_viewer_script_end
     .global nearpose_viewer_style_begin
     .global nearpose_viewer_style_end
+    .global nearpose_viewer_policy_begin
+    .global nearpose_viewer_policy_end
 nearpose_viewer_script_begin:
     .incbin \"${viewer_build}/viewer.js\"
 nearpose_viewer_script_end:
@@ -55,6 +57,10 @@ nearpose_viewer_script_end:
 nearpose_viewer_style_begin:
     .incbin \"${viewer_build}/viewer.css\"
 nearpose_viewer_style_end:
+    .byte 0
+nearpose_viewer_policy_begin:
+    .incbin \"${viewer_build}/viewer.policy\"
+nearpose_viewer_policy_end:
     .byte 0
     .section .note.GNU-stack,\"\",%progbits
 ")

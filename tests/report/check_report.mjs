@@ -1,5 +1,6 @@
 // A small simulated run, its report, and whether a browser shows it: node check_report.mjs NEARPOSE [CHROMIUM]
 import assert from 'node:assert/strict';
+import { createHash } from 'node:crypto';
 import { execFileSync, spawnSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, statSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -73,6 +74,34 @@ async function checkVerdicts(browser, log) {
   }
 }
 
+// Where the camera's poses are known, the part's place in the world is shown.
+async function checkArm(browser) {
+  const shown = await browser.evaluate(`({ plots: document.querySelectorAll('.arm-panel .uplot canvas').length,
+    conclusions: [...document.querySelectorAll('.arm-panel .conclusion')].map((line) => line.textContent),
+    legends: [...document.querySelectorAll('.arm-panel .u-legend')].map((legend) =>
+      [...legend.querySelectorAll('.u-series')].map((row) => row.textContent)) })`);
+  assert.equal(shown.plots, 2);
+  assert.deepEqual(shown.conclusions, ['Nothing contradicts the arm.']);
+  for (const [frame, ...axes] of shown.legends) {
+    assert.match(frame, /^frame:?\d+$/);
+    assert.deepEqual(axes.map((text) => text[0]), ['x', 'y', 'z'], 'bands have no legend of their own');
+  }
+}
+
+// The page allows its own script and style by their hashes, and nothing else.
+async function checkPolicy(browser, html) {
+  const policy = /<meta http-equiv="Content-Security-Policy" content="([^"]*)">/.exec(html)[1];
+  const hash = (text) => `'sha256-${createHash('sha256').update(text).digest('base64')}'`;
+  const between = (begin, end) => html.slice(html.lastIndexOf(begin) + begin.length, html.lastIndexOf(end));
+  assert.ok(policy.includes(`script-src ${hash(between('<script>', '</script>'))}`), policy);
+  assert.ok(policy.includes(`style-src ${hash(between('<style>', '</style>'))}`), policy);
+  assert.doesNotMatch(policy, /unsafe|\*|https?:/);
+  assert.equal(await browser.evaluate(`(() => { const added = document.createElement('script');
+    added.textContent = 'window.injected = true'; document.body.append(added); return window.injected === true; })()`), false);
+  for (let tries = 0; browser.problems.length === 0 && tries < 50; ++tries) await new Promise((done) => setTimeout(done, 100));
+  assert.ok(browser.problems.length > 0 && browser.problems.every((text) => text.includes('Content Security Policy')), browser.problems.join());
+}
+
 async function check(browser, report, poses, log) {
   await browser.open(pathToFileURL(report).href);
   await browser.until(`document.body?.dataset.frame !== undefined && document.querySelectorAll('.uplot').length >= 4 &&
@@ -96,6 +125,7 @@ async function check(browser, report, poses, log) {
   assert.match(cursors, /^1(,1)*$/);
 
   await checkVerdicts(browser, log);
+  await checkArm(browser);
 
   // The block alone covers a good part of the view, and nothing does once all is switched off.
   const toggles = (on) => browser.evaluate(`document.querySelectorAll('.view-panel .toggle input').forEach((box, i) => {
@@ -109,6 +139,7 @@ async function check(browser, report, poses, log) {
   await settle();
   assert.equal(await browser.evaluate(COVERED), 0);
   assert.deepEqual(browser.problems, []);
+  await checkPolicy(browser, readFileSync(report, 'utf8'));
 }
 
 let browser = null;

@@ -3,6 +3,7 @@
 function furnish(made, attributes, children) {
   for (const [key, value] of Object.entries(attributes)) {
     if (typeof value === 'function') made.addEventListener(key, value);
+    else if (key === 'style') made.style.cssText = value; // the page's policy forbids the attribute
     else if (value === true) made.setAttribute(key, '');
     else if (value !== false && value != null) made.setAttribute(key, value);
   }
@@ -52,4 +53,15 @@ export function digits(value) {
   const size = Math.abs(value);
   const decimals = size >= 100 ? 0 : size >= 10 ? 1 : size >= 0.1 || size === 0 ? 2 : 3;
   return value.toFixed(decimals);
+}
+
+// Neighbouring places that are set, as [begin, end).
+export function stretches(flags) {
+  const list = [];
+  flags.forEach((set, i) => {
+    if (!set) return;
+    if (list.at(-1)?.[1] === i) list.at(-1)[1] = i + 1;
+    else list.push([i, i + 1]);
+  });
+  return list;
 }

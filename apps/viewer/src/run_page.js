@@ -3,6 +3,7 @@ import { View3d } from './view3d.js';
 import { RESIDUAL_RANGE_MM } from './view_parts.js';
 import { DepthView } from './depth_view.js';
 import { runPlots } from './run_plots.js';
+import { armPanel } from './arm_panel.js';
 import { Player, listenToKeys } from './player.js';
 import { choice, digits, element, toggle } from './dom.js';
 import { depthColor, gradient, residualColor } from './ramps.js';
@@ -30,6 +31,12 @@ function transport(data, player) {
 
 const STATUS = { estimated: 'estimated', predicted: 'predicted, the part is not seen', no_pose: 'no pose yet' };
 
+// Where the arm's poses put the part's centre.
+function placed({ arm }, index) {
+  const place = arm?.frames[index];
+  return place && `${place.shift_mm.map((shift, axis) => (1e3 * arm.centre_m[axis] + shift).toFixed(1)).join(', ')} mm`;
+}
+
 function facts(data, player) {
   const list = element('dl', { class: 'facts' });
   player.onChange((index) => {
@@ -41,6 +48,7 @@ function facts(data, player) {
       frame.error_deg != null && ['rotation error', `${digits(frame.error_deg)}°`],
       frame.sigma_mm != null && ['expected (1 σ)', `${digits(frame.sigma_mm)} mm, ${digits(frame.sigma_deg)}°`],
       distance && ['distance of its origin', `${digits(distance)} mm`],
+      placed(data, index) && ['its centre in the world', placed(data, index)],
       frame.agreement != null && ['agreement', `${digits(100 * frame.agreement)} %`],
       frame.score != null && ['score', `${digits(100 * frame.score)} %`],
       frame.time_ms != null && ['time', `${digits(frame.time_ms)} ms`]];
@@ -118,7 +126,7 @@ export function showRun(page, data) {
     element('section', { class: 'scene', 'aria-label': 'Frames' }, panel,
       element('div', { class: 'aside' }, depth.panel, element('div', { class: 'panel' }, facts(data, player), missingList(data, player))),
       element('div', { class: 'panel transport-panel' }, transport(data, player))),
-    ...[verdictPanel(data, player)].filter(Boolean),
+    ...[verdictPanel(data, player), armPanel(data, player)].filter(Boolean),
     runPlots(data, player),
     details(data));
   const view = start();

@@ -1,6 +1,6 @@
 // Plots over frames; their cursor is the frame that is shown.
 import uPlot from 'uplot';
-import { color, digits, element, whenColorsChange } from './dom.js';
+import { color, digits, element, stretches, whenColorsChange } from './dom.js';
 
 const column = (frames, key, scale = 1) =>
   frames.map((frame) => (frame[key] == null ? null : scale * frame[key]));
@@ -49,24 +49,62 @@ export function axis(extra = {}) {
     grid: { stroke: color('grid'), width: 1 }, ticks: { stroke: color('grid'), width: 1, size: 4 }, ...extra };
 }
 
+// A series with `low` and `high` has a band between them: two more columns, without lines.
+const columnsOf = (plot) => plot.series.flatMap((one) => (one.low ? [one.values, one.high, one.low] : [one.values]));
+
+function seriesOf(plot) {
+  const bands = [];
+  const list = [{ label: 'frame', value: (u, value) => (value == null ? '–' : String(value)) }];
+  for (const one of plot.series) {
+    const index = list.push({
+      label: one.label, stroke: color(one.color), width: one.band ? 1.25 : 2, dash: one.band ? [5, 4] : undefined,
+      fill: one.band ? `color-mix(in srgb, ${color(one.color)} 14%, transparent)` : undefined,
+      fillTo: plot.log && one.band ? (u) => u.scales.y.min : undefined,
+      points: { show: false }, value: (u, value) => (value == null ? '–' : `${digits(value)} ${plot.unit}`),
+    }) - 1;
+    if (!one.low) continue;
+    for (const edge of ['high', 'low']) list.push({ label: `${one.label} ${edge}`, stroke: 'transparent', points: { show: false } });
+    bands.push({ series: [index + 1, index + 2], fill: `color-mix(in srgb, ${color(one.color)} 15%, transparent)` });
+  }
+  return { series: list, bands };
+}
+
+// A curve goes with its band.
+function showBand(chart, index, show) {
+  const band = chart.bands.find(({ series: [high] }) => high === index + 1);
+  for (const edge of band?.series ?? []) if (chart.series[edge].show !== show) chart.setSeries(edge, { show });
+}
+
+// Behind the curves, over half a frame to both sides.
+function drawMarks(chart, marks) {
+  const { ctx, bbox } = chart;
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+  ctx.clip();
+  const ids = chart.data[0];
+  for (const { flags, color: name } of marks) {
+    ctx.fillStyle = `color-mix(in srgb, ${color(name)} 20%, transparent)`;
+    for (const [begin, end] of stretches(flags)) {
+      const from = chart.valToPos(ids[begin] - 0.5, 'x', true), to = chart.valToPos(ids[end - 1] + 0.5, 'x', true);
+      ctx.fillRect(from, bbox.top, to - from, bbox.height);
+    }
+  }
+  ctx.restore();
+}
+
 function optionsOf(plot, width, height) {
-  const yRange = plot.log ? logRange : [0, plot.from0 ?? null];
+  const yRange = plot.range ?? (plot.log ? logRange : [0, plot.from0 ?? null]);
   return {
     width, height, legend: { live: true }, padding: [8, 10, 0, 0],
     cursor: { sync: { key: 'frames', setSeries: false }, drag: { x: false, y: false }, points: { size: 7 }, y: false },
     scales: { x: { time: false }, y: { distr: plot.log ? 3 : 1, range: yRange } },
-    axes: [axis({ size: 26, space: 60 }), axis({ size: 46, ...(plot.log ? { values: logLabel, filter: (u, splits) => splits } : {}) })],
-    series: [{ label: 'frame', value: (u, value) => (value == null ? '–' : String(value)) },
-      ...plot.series.map((one) => ({
-        label: one.label, stroke: color(one.color), width: one.band ? 1.25 : 2, dash: one.band ? [5, 4] : undefined,
-        fill: one.band ? `color-mix(in srgb, ${color(one.color)} 14%, transparent)` : undefined,
-        fillTo: plot.log && one.band ? (u) => u.scales.y.min : undefined,
-        points: { show: false }, value: (u, value) => (value == null ? '–' : `${digits(value)} ${plot.unit}`),
-      }))],
+    axes: [axis({ size: 26, space: 60 }), axis({ size: plot.size ?? 46, ...(plot.log ? { values: logLabel, filter: (u, splits) => splits } : {}) })],
+    ...seriesOf(plot),
   };
 }
 
-class FramePlot {
+export class FramePlot {
   constructor(plot, ids, player) {
     Object.assign(this, { plot, ids, player });
     this.holder = element('div', { class: 'plot' });
@@ -78,8 +116,12 @@ class FramePlot {
     this.chart?.destroy();
     const width = Math.max(240, this.holder.clientWidth);
     // Positions are known once it is laid out.
-    const hooks = { ready: [(chart) => { this.chart = chart; this.show(this.player.index); }] };
-    this.chart = new uPlot({ ...optionsOf(this.plot, width, 190), hooks }, [this.ids, ...this.plot.series.map((one) => one.values)], this.holder);
+    const hooks = { ready: [(chart) => { this.chart = chart; this.show(this.player.index); }],
+      drawClear: [(chart) => drawMarks(chart, this.plot.marks ?? [])],
+      setSeries: [(chart, index, { show }) => { if (index != null && show != null) showBand(chart, index, show); }] };
+    this.chart = new uPlot({ ...optionsOf(this.plot, width, 190), hooks }, [this.ids, ...columnsOf(this.plot)], this.holder);
+    const edges = new Set(this.chart.bands.flatMap((band) => band.series));
+    this.chart.root.querySelectorAll('.u-legend .u-series').forEach((row, i) => { if (edges.has(i)) row.remove(); });
     this.now = element('div', { class: 'now' });
     const { over } = this.chart;
     over.append(this.now);
@@ -105,11 +147,8 @@ class FramePlot {
   }
 }
 
-// One panel a plot.
-export function runPlots(data, player) {
-  const ids = data.frames.map((frame) => frame.id);
-  const plots = plotsOf(data).map((plot) => new FramePlot(plot, ids, player));
-  const section = element('section', { class: 'plots', 'aria-label': 'Figures over frames' }, plots.map((plot) => plot.panel));
+// Drawn once the page is laid out, and anew where colours or sizes change.
+export function keepDrawn(plots, section, player) {
   const buildAll = () => plots.forEach((plot) => plot.build());
   requestAnimationFrame(buildAll);
   whenColorsChange(buildAll);
@@ -117,4 +156,11 @@ export function runPlots(data, player) {
   window.addEventListener('beforeprint', () => plots.forEach((plot) => plot.resize()));
   player.onChange((index) => plots.forEach((plot) => plot.show(index)));
   return section;
+}
+
+// One panel a plot.
+export function runPlots(data, player) {
+  const ids = data.frames.map((frame) => frame.id);
+  const plots = plotsOf(data).map((plot) => new FramePlot(plot, ids, player));
+  return keepDrawn(plots, element('section', { class: 'plots', 'aria-label': 'Figures over frames' }, plots.map((plot) => plot.panel)), player);
 }

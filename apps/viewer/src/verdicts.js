@@ -1,5 +1,5 @@
 // Why frames were not accepted: the sentences of the frame that is shown, and which frames lacked what.
-import { digits, drawing, element } from './dom.js';
+import { digits, drawing, element, stretches } from './dom.js';
 
 // The sentences are the log's.
 export function missingList(data, player) {
@@ -8,17 +8,6 @@ export function missingList(data, player) {
     const missing = data.frames[index].missing ?? [];
     list.hidden = missing.length === 0;
     list.replaceChildren(...missing.map(({ text }) => element('li', {}, text)));
-  });
-  return list;
-}
-
-// Neighbouring places that are set, as [begin, end).
-function stretches(flags) {
-  const list = [];
-  flags.forEach((set, i) => {
-    if (!set) return;
-    if (list.at(-1)?.[1] === i) list.at(-1)[1] = i + 1;
-    else list.push([i, i + 1]);
   });
   return list;
 }

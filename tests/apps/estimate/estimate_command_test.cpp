@@ -70,6 +70,33 @@ TEST(Estimate, WritesEveryFrameAsTheReadersOfItsFormatsExpect) {
     }
 }
 
+// The log and the trajectory say the same, and a frame without the camera's pose has neither.
+TEST(Estimate, LogsThePartInTheWorldWhereTheCamerasPoseIsKnown) {
+    const TinyScene scene(4);
+    const fs::path camera_file = scene.scene() / "scene_camera.json";
+    nlohmann::json cameras = nlohmann::json::parse(read_text(camera_file));
+    cameras["1"].erase("cam_R_w2c");
+    cameras["1"].erase("cam_t_w2c");
+    write_text(camera_file, cameras.dump());
+    const Outcome outcome =
+        run_nearpose("estimate " + scene.input() + "--run " + scene.file("run").string() + " --trajectory-frame world");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const std::vector<data_set::StampedPose> rows = data_set::read_tum(scene.file("run/poses.tum"));
+    ASSERT_EQ(rows.size(), 3U);
+    const std::vector<std::string> log = lines_of(read_text(scene.file("run/log.jsonl")));
+    ASSERT_EQ(log.size(), 5U);
+    for (std::size_t frame = 0, row = 0; frame < 4; ++frame) {
+        const nlohmann::json line = nlohmann::json::parse(log[frame + 1]);
+        EXPECT_EQ(line.contains("world_from_object"), frame != 1) << frame;
+        if (frame == 1) continue;
+        const nlohmann::json& world = line["world_from_object"];
+        for (int axis = 0; axis < 3; ++axis)
+            EXPECT_NEAR(world["translation_m"][axis].get<double>(), rows[row].pose.translation[axis], 1e-9);
+        EXPECT_GT(world["covariance"][21].get<double>(), line["covariance"][21].get<double>());
+        ++row;
+    }
+}
+
 TEST(Estimate, StartedAtAPoseItIsAtTheTruth) {
     const TinyScene scene;
     const Outcome outcome = run_nearpose(estimate(scene, ""));

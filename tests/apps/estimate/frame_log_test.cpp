@@ -24,6 +24,36 @@ TEST(FirstLogLine, StatesTheToleranceOfTheVerdicts) {
     EXPECT_DOUBLE_EQ(file.root().at("tolerance_rad").number(), 0.02);
 }
 
+TEST(FirstLogLine, StatesTheErrorsThatTheCovarianceInTheWorldAllowsFor) {
+    const auto file = data_set::JsonFile::from_text(first_log_line({}), "log");
+    const data_set::JsonValue sigmas = file.root().at("world_sigmas");
+    EXPECT_DOUBLE_EQ(sigmas.at("hand_eye_m").number(), StillWorldOptions{}.usual.hand_eye_m);
+    EXPECT_DOUBLE_EQ(sigmas.at("arm_rotation_rad").number(), SightingOptions{}.arm_rotation_rad);
+}
+
+TEST(FrameLogLine, HoldsThePartInTheWorldWhereTheCamerasPoseIsKnown) {
+    UpdateResult result;
+    result.status = UpdateStatus::kEstimated;
+    FrameReport frame{3, 0.1, 0.01, {}, {}};
+    const auto without = data_set::JsonFile::from_text(frame_log_line(frame, result), "log");
+    EXPECT_FALSE(without.root().find("world_from_object"));
+
+    PlaceInWorld place{some_pose(), Matrix6d::Identity()};
+    place.covariance(0, 4) = place.covariance(4, 0) = 0.5;
+    frame.in_world = place;
+    const auto file = data_set::JsonFile::from_text(frame_log_line(frame, result), "log");
+    const data_set::JsonValue world = file.root().at("world_from_object");
+    for (int i = 0; i < 3; ++i)
+        EXPECT_EQ(world.at("translation_m").numbers(3)[i], place.world_from_object.translation[i]);
+    for (int i = 0; i < 4; ++i)
+        EXPECT_EQ(world.at("quaternion_xyzw").numbers(4)[i], place.world_from_object.rotation.coeffs()[i]);
+    const Matrix6d ros = ros_covariance(place.covariance, place.world_from_object);
+    for (int i = 0; i < 36; ++i) {
+        EXPECT_EQ(world.at("covariance").numbers(36)[i], place.covariance(i / 6, i % 6));
+        EXPECT_EQ(world.at("covariance_ros").numbers(36)[i], ros(i / 6, i % 6));
+    }
+}
+
 // Poses drawn from the right perturbation scatter about the camera's axes as covariance_ros says.
 TEST(RosCovariance, IsThatOfSampledPoses) {
     Twist sigmas;

@@ -43,11 +43,11 @@ void write_log(const TinyScene& scene, const std::vector<data_set::PoseRow>& row
         result.camera_from_object = row.camera_from_object;
         result.verdict = verdict_of_frame(row.image_id);
         result.covariance.diagonal() << 1e-4, 1e-4, 1e-4, 1e-6, 1e-6, 1e-6;
-        log += program::frame_log_line({row.image_id, 0.0, 0.01, ""}, result) + "\n";
+        log += program::frame_log_line({row.image_id, 0.0, 0.01, "", {}}, result) + "\n";
     }
     UpdateResult nothing;
     nothing.verdict = verdict_of_frame(1);
-    log += program::frame_log_line({1, 0.0, 0.01, ""}, nothing) + "\n";
+    log += program::frame_log_line({1, 0.0, 0.01, "", {}}, nothing) + "\n";
     write_text(scene.file("log.jsonl"), log);
 }
 

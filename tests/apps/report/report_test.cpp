@@ -114,6 +114,8 @@ TEST_F(RunReport, HoldsTheRunAndErrors) {
     if (viewer_available()) {
         const std::string html = page(report.title, report.json);
         EXPECT_TRUE(contains(html, "Permission is hereby granted")) << "licence texts";
+        EXPECT_LT(html.find("Content-Security-Policy"), html.find("<style>")) << "the policy comes before all it rules";
+        EXPECT_TRUE(contains(html, "default-src 'none'; script-src 'sha256-"));
     }
 }
 
@@ -153,6 +155,28 @@ TEST_F(RunReportOfALog, HoldsVerdictsAndTheLogsSentences) {
     EXPECT_EQ(verdicts["lacks"][0]["frames"], 1);
     EXPECT_EQ(verdicts["lacks"][0]["first_frame"], 2);
     EXPECT_EQ(verdicts["lacks"][1]["title"], "colour") << "a requirement of a newer program";
+}
+
+TEST_F(RunReportOfALog, ShowsThePartInTheWorldAndWhatWasConcludedOfTheArm) {
+    const nlohmann::json arm = report_with([](nlohmann::json& line) {
+        if (line["frame"] == 1) line["arm"]["cause"] = "depth scale";
+    })["arm"];
+    ASSERT_EQ(arm["frames"].size(), 3U);
+    for (const nlohmann::json& frame : arm["frames"])
+        for (const nlohmann::json& shift_mm : frame["shift_mm"]) EXPECT_LT(std::abs(shift_mm.get<double>()), 3.0);
+    EXPECT_EQ(arm["events"], nlohmann::json({"", "cause", ""}));
+    ASSERT_EQ(arm["conclusions"].size(), 1U);
+    EXPECT_TRUE(contains(arm["conclusions"][0].get<std::string>(), "depth scale")) << arm["conclusions"];
+    EXPECT_TRUE(contains(arm["conclusions"][0].get<std::string>(), "in frame 1")) << arm["conclusions"];
+}
+
+TEST_F(RunReportOfALog, LeavesTheArmOutWhereTheLogHasNone) {
+    const nlohmann::json report = report_with([](nlohmann::json& line) {
+        line.erase("world_from_object");
+        line.erase("arm");
+    });
+    EXPECT_TRUE(report["arm"].is_null());
+    EXPECT_EQ(report["frames"].size(), 3U);
 }
 
 TEST_F(RunReportOfALog, ReadsLogsThatDoNotSayWhy) {
