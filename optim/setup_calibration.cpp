@@ -157,6 +157,26 @@ double unit_sigma_of(const std::vector<SightingCost>& costs, const Twist& place,
     return std::sqrt(*middle / kMedianChiSquare6);
 }
 
+// Minimises, and gives the covariance of the errors with all else free. False where either fails.
+bool solve(ceres::Problem& problem, const SetupCalibrationOptions& options, const SetupVector& errors,
+           SetupMatrix& covariance) {
+    ceres::Solver::Options solver;
+    solver.linear_solver_type = ceres::DENSE_QR;
+    solver.max_num_iterations = options.max_iterations;
+    solver.function_tolerance = 1e-9;
+    solver.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &problem, &summary);
+    if (summary.termination_type != ceres::CONVERGENCE || !errors.allFinite()) return false;
+
+    ceres::Covariance::Options dense;
+    dense.algorithm_type = ceres::DENSE_SVD;
+    ceres::Covariance found(dense);
+    // Row by row, which of a symmetric matrix is the same as column by column.
+    return found.Compute({std::make_pair<const double*, const double*>(errors.data(), errors.data())}, &problem) &&
+           found.GetCovarianceBlock(errors.data(), errors.data(), covariance.data());
+}
+
 }  // namespace
 
 SetupVector in_order(const SetupSigmas& sigmas) {
@@ -203,22 +223,8 @@ SetupCalibration calibrate_setup(const std::vector<Sighting>& sightings, const E
     problem.AddResidualBlock(
         new ceres::AutoDiffCostFunction<PriorCost, kSetupUnknowns, kSetupUnknowns>(new PriorCost(options)), nullptr,
         errors.data());
-    ceres::Solver::Options solver;
-    solver.linear_solver_type = ceres::DENSE_QR;
-    solver.max_num_iterations = options.max_iterations;
-    solver.function_tolerance = 1e-9;
-    solver.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(solver, &problem, &summary);
-
-    ceres::Covariance::Options dense;
-    dense.algorithm_type = ceres::DENSE_SVD;
-    ceres::Covariance covariance(dense);
-    const std::vector<std::pair<const double*, const double*>> blocks{{errors.data(), errors.data()}};
-    Eigen::Matrix<double, kSetupUnknowns, kSetupUnknowns, Eigen::RowMajor> found;
-    if (summary.termination_type != ceres::CONVERGENCE || !covariance.Compute(blocks, &problem) ||
-        !covariance.GetCovarianceBlock(errors.data(), errors.data(), found.data()) || !errors.allFinite())
-        return result;
+    SetupMatrix found;
+    if (!solve(problem, options, errors, found)) return result;
     result.unit_sigma = unit_sigma_of(costs, place, errors);
     result.errors = errors;
     // The prior's share does not grow: no sigma exceeds it.

@@ -74,12 +74,4 @@ PoseEstimator start_estimator(const EstimatorSetup& setup, std::shared_ptr<const
     return made;
 }
 
-std::optional<Pose> control_of(const FrameSource& source, std::size_t index) {
-    if (index == 0) return std::nullopt;
-    const std::optional<Pose>& now = source.frames()[index].camera_from_world;
-    const std::optional<Pose>& before = source.frames()[index - 1].camera_from_world;
-    if (!now || !before) return std::nullopt;
-    return *now * before->inverse();
-}
-
 }  // namespace nearpose::program

@@ -2,11 +2,9 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 
 #include "apps/base/command.hpp"
 #include "apps/runs/estimator_setup.hpp"
-#include "apps/runs/frame_source.hpp"
 #include "apps/runs/run_options.hpp"
 #include "core/estimator.hpp"
 #include "raycast/mesh.hpp"
@@ -21,8 +19,5 @@ EstimatorSetup setup_of(const EstimateOptions& options, const Mesh& mesh, const 
 // At the initial pose, where the options give one. `views` are those of the setup.
 PoseEstimator start_estimator(const EstimatorSetup& setup, std::shared_ptr<const ViewGenerator> views,
                               const EstimateOptions& options);
-
-// The camera's measured motion from the frame before to this one; nothing where one of them has no pose.
-std::optional<Pose> control_of(const FrameSource& source, std::size_t index);
 
 }  // namespace nearpose::program

@@ -7,7 +7,7 @@
 
 #include "apps/base/degrees.hpp"
 #include "apps/base/number_text.hpp"
-#include "apps/runs/estimator_start.hpp"
+#include "apps/runs/camera_motion.hpp"
 #include "apps/set_up/corrected_source.hpp"
 
 namespace nearpose::program {
@@ -44,7 +44,7 @@ Tracked track(const FrameSource& source, double frame_s, PoseEstimator estimator
     std::vector<double> steps_s;  // parallel to the sightings: the time from the frame before
     for (std::size_t index = 0; index < source.frames().size(); ++index) {
         const Observation observation = observe_frame(source.frames()[index], read_or_empty(source, index));
-        const UpdateResult result = estimator.update(observation, control_of(source, index));
+        const UpdateResult result = estimator.update(observation, control_of(source.frames(), index));
         const Sightings& sightings = estimator.belief().sightings;
         steps_s.resize(sightings.kept.size(), frame_s);
         if (is_of_now(sightings)) steps_s.back() = step_s(source, index);

@@ -1,4 +1,4 @@
-#include "apps/estimate/camera_motion.hpp"
+#include "apps/runs/camera_motion.hpp"
 
 #include <gtest/gtest.h>
 
