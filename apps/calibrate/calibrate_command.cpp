@@ -5,6 +5,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "apps/base/console.hpp"
 #include "apps/base/number_text.hpp"
@@ -21,6 +22,7 @@ struct CalibrateOptions {
     EstimateOptions input;
     std::filesystem::path out;
     int passes = CalibrationOptions{}.passes;
+    std::vector<std::string> unknown = setup_parts();
 };
 
 // The part's place cannot be compared where the arm's poses are missing.
@@ -77,6 +79,7 @@ int calibrate_recording(const CalibrateOptions& options, const SharedOptions& sh
     const std::shared_ptr<const ViewGenerator> views = make_view_generator(setup, mesh);
     CalibrationOptions calibration;
     calibration.passes = options.passes;
+    calibration.prior_sigma = prior_with_unknown(options.unknown);
     Progress progress("calibrate", options.passes * static_cast<int>(source->frames().size()), shared.quiet);
     const Calibration found = calibrate(
         source, extent_of(mesh).centre_in_object(), setup, views,
@@ -99,6 +102,13 @@ void add_calibrate_command(CLI::App& app, const SharedOptions& shared, Run& run)
         ->add_option("--passes", options->passes,
                      "At most so many passes over the recording, each corrected by the last")
         ->check(CLI::Range(1, 20));
+    command
+        ->add_option(
+            "--unknown", options->unknown,
+            "What may be at fault, a list; the rest is taken to be as good as a set-up usually is, which makes "
+            "the others more precise")
+        ->delimiter(',')
+        ->check(CLI::IsMember(setup_parts()));
     command->add_option("--out", options->out,
                         "File to write the errors into (JSON), for `nearpose estimate --set-up`");
     command->callback(

@@ -13,7 +13,7 @@
 namespace nearpose::program {
 namespace {
 
-// The estimator's sightings, each with its motion a frame of the usual length.
+// The estimator's sightings, each with the camera's motion at its frame.
 struct Tracked {
     std::vector<Sighting> sightings;
     MotionMistake mistake = MotionMistake::kNone;
@@ -28,8 +28,31 @@ FrameData read_or_empty(const FrameSource& source, std::size_t index) {
     }
 }
 
-double step_s(const FrameSource& source, std::size_t index) {
-    return index == 0 ? 0.0 : source.frames()[index].stamp_s - source.frames()[index - 1].stamp_s;
+// The camera's motion about a frame in the usual time between two, by the poses `reach` frames before and after.
+Twist motion_over(const std::vector<FrameInfo>& frames, std::size_t index, std::size_t reach, double frame_s) {
+    const std::size_t before = index - std::min(index, reach);
+    const std::size_t after = std::min(index + reach, frames.size() - 1);
+    const double between_s = frames[after].stamp_s - frames[before].stamp_s;
+    if (!frames[before].camera_from_world || !frames[after].camera_from_world || between_s <= 0.0) return Twist::Zero();
+    const Pose before_from_after = *frames[before].camera_from_world * frames[after].camera_from_world->inverse();
+    return frame_s / between_s * log(before_from_after);
+}
+
+// The camera's motion at a frame. Errors of the arm's poses in it would pass for errors of the time: the frame's own
+// pose has no part in it, and the poses are as far apart as the motion stays the same (Lepski's choice).
+Twist motion_at(const std::vector<FrameInfo>& frames, std::size_t index, double frame_s) {
+    constexpr std::size_t kLongestReach = 3;
+    constexpr double kSigmas = 3.0;
+    const SightingOptions arm;
+    const Twist nearest = motion_over(frames, index, 1, frame_s);
+    for (std::size_t reach = kLongestReach; reach > 1; --reach) {
+        const Twist motion = motion_over(frames, index, reach, frame_s);
+        const Twist change = motion - nearest;
+        if (change.head<3>().norm() < kSigmas * arm.arm_rotation_rad &&
+            change.tail<3>().norm() < kSigmas * arm.arm_translation_m)
+            return motion;
+    }
+    return nearest;
 }
 
 // Whether the last sighting is of the present frame.
@@ -41,19 +64,19 @@ bool is_of_now(const Sightings& sightings) {
 
 Tracked track(const FrameSource& source, double frame_s, PoseEstimator estimator, const FrameDone& frame_done) {
     Tracked tracked;
-    std::vector<double> steps_s;  // parallel to the sightings: the time from the frame before
+    std::vector<std::size_t> frame_of;  // parallel to the sightings
     for (std::size_t index = 0; index < source.frames().size(); ++index) {
         const Observation observation = observe_frame(source.frames()[index], read_or_empty(source, index));
         const UpdateResult result = estimator.update(observation, control_of(source.frames(), index));
         const Sightings& sightings = estimator.belief().sightings;
-        steps_s.resize(sightings.kept.size(), frame_s);
-        if (is_of_now(sightings)) steps_s.back() = step_s(source, index);
+        frame_of.resize(sightings.kept.size(), index);
+        if (is_of_now(sightings)) frame_of.back() = index;
         if (result.arm.motion.mistake != MotionMistake::kNone) tracked.mistake = result.arm.motion.mistake;
         if (!frame_done()) return tracked;
     }
     tracked.sightings = estimator.belief().sightings.kept;
     for (std::size_t k = 0; k < tracked.sightings.size(); ++k)
-        if (steps_s[k] > 0.0) tracked.sightings[k].camera_motion *= frame_s / steps_s[k];
+        tracked.sightings[k].camera_motion = motion_at(source.frames(), frame_of[k], frame_s);
     tracked.complete = true;
     return tracked;
 }

@@ -1,6 +1,10 @@
 #include "apps/set_up/setup_errors.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <utility>
 
 namespace nearpose::program {
 
@@ -22,6 +26,28 @@ SetupErrors errors_of(const SetupVector& vector, double frame_s) {
     errors.given_from_camera.translation = vector.segment<3>(kHandEyeShift);
     errors.time_offset_s = vector[kTimeOffset] * frame_s;
     return errors;
+}
+
+const std::vector<std::string>& setup_parts() {
+    static const std::vector<std::string> parts = {"focal", "principal-point", "depth-scale", "hand-eye", "time"};
+    return parts;
+}
+
+SetupVector prior_with_unknown(const std::vector<std::string>& parts) {
+    const std::array<std::pair<Eigen::Index, Eigen::Index>, 5> places = {{{kFocalLengthError, 1},
+                                                                          {kImageColumns, 2},
+                                                                          {kDepthScaleError, 1},
+                                                                          {kHandEyeTurn, 6},
+                                                                          {kTimeOffset, 1}}};  // first and count
+    const SetupVector wide = in_order(StillWorldOptions{}.faulty);
+    SetupVector sigma = in_order(StillWorldOptions{}.usual);
+    for (const std::string& part : parts) {
+        const auto found = std::find(setup_parts().begin(), setup_parts().end(), part);
+        if (found == setup_parts().end()) throw std::invalid_argument("no part of a set-up is called '" + part + "'");
+        const auto [first, count] = places[static_cast<std::size_t>(found - setup_parts().begin())];
+        sigma.segment(first, count) = wide.segment(first, count);
+    }
+    return sigma;
 }
 
 SetupErrors composed(const SetupErrors& first, const SetupErrors& left) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
+#include <vector>
 
 #include "core/base/camera.hpp"
 #include "core/base/pose.hpp"
@@ -21,6 +23,12 @@ struct SetupErrors {
 // In the order of the unknowns; a frame takes `frame_s`.
 SetupVector in_order(const SetupErrors& errors, double frame_s);
 SetupErrors errors_of(const SetupVector& vector, double frame_s);
+
+// Parts of a set-up that can be at fault: focal, principal-point, depth-scale, hand-eye, time.
+const std::vector<std::string>& setup_parts();
+// Prior standard deviations in the order of the unknowns: wide for those parts, for the others those of a usual set-up.
+// Throws std::invalid_argument for a name that is none of them.
+SetupVector prior_with_unknown(const std::vector<std::string>& parts);
 
 // Errors that were found first, and then those that were left after their correction.
 SetupErrors composed(const SetupErrors& first, const SetupErrors& left);
