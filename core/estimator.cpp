@@ -119,7 +119,8 @@ void PoseEstimator::restore(const Belief& belief) {
         throw std::invalid_argument("PoseEstimator: the belief to put back has particles without weights");
     if (belief.tracked.has_value() != (belief.particles.size() > 0))
         throw std::invalid_argument("PoseEstimator: the belief to put back has particles without a tracked pose");
-    belief_ = belief;
+    Belief copy = belief;
+    belief_ = std::move(copy);  // cannot fail half way, as an assignment of the members one by one could
 }
 
 void PoseEstimator::reset() {

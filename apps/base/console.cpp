@@ -70,14 +70,18 @@ void catch_interrupts() {
     struct sigaction action = {};
     action.sa_handler = request_stop;
     action.sa_flags = static_cast<int>(SA_RESTART | SA_RESETHAND);  // a second Ctrl-C ends the program at once
-    sigaction(SIGINT, &action, nullptr);
-    sigaction(SIGTERM, &action, nullptr);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        struct sigaction before = {};
+        sigaction(signal, nullptr, &before);
+        if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);  // nohup has it ignored
+    }
 }
 
-void ignore_closed_pipes() {
+void let_writes_fail() {
     struct sigaction ignore = {};
-    ignore.sa_handler = SIG_IGN;  // a closed pipe shows as a failed write instead
+    ignore.sa_handler = SIG_IGN;
     sigaction(SIGPIPE, &ignore, nullptr);
+    sigaction(SIGXFSZ, &ignore, nullptr);
 }
 
 Progress::Progress(std::string_view label, int total, bool quiet)

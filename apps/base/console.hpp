@@ -17,11 +17,12 @@ void print_notice(std::string_view message, bool quiet);
 // disk.
 void print(std::string_view text);
 
-// True after Ctrl-C (SIGINT) or SIGTERM. A command asks once a frame, finishes what it is writing, and returns
-// kInterrupted. Without catch_interrupts() the signals end the program at once.
+// True after Ctrl-C (SIGINT), SIGTERM, or SIGHUP where it is not ignored. A command asks once a frame, finishes what it
+// is writing, and returns kInterrupted. Without catch_interrupts() the signals end the program at once.
 bool interrupted();
 void catch_interrupts();
-void ignore_closed_pipes();  // writing to one fails instead of ending the program
+// Writing to a closed pipe, or beyond the limit on a file's size, fails instead of ending the program.
+void let_writes_fail();
 
 // A bar with the time left; drawn only where the standard error stream is a terminal and `quiet` is not set. Messages
 // may be printed between two steps: the bar clears its line before them.

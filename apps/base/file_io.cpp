@@ -16,6 +16,32 @@ std::runtime_error system_error(const std::string& name, const std::string& what
     return std::runtime_error(name + ": " + what + ": " + std::generic_category().message(code));
 }
 
+// What a user can do about a file that cannot be written; begins with "; ".
+std::string remedy(int code) {
+    switch (code) {
+        case ENOSPC:
+        case EDQUOT:
+            return "; make room, or name another place";
+        case EFBIG:
+            return "; raise the limit on the size of files (ulimit -f)";
+        case EMFILE:
+        case ENFILE:
+            return "; raise the limit on open files (ulimit -n)";
+        case EACCES:
+        case EPERM:
+        case EROFS:
+            return "; name a place that you may write to";
+        case EIO:
+            return "; the disk may be failing: name another place";
+        default:
+            return "";
+    }
+}
+
+std::runtime_error write_error(const std::string& name, const std::string& what, int code) {
+    return std::runtime_error(system_error(name, what, code).what() + remedy(code));
+}
+
 // Number of bytes handed to the system before an error; all of them where there was none. errno tells the error.
 std::size_t write_all(int descriptor, std::string_view bytes) {
     std::size_t done = 0;
@@ -47,9 +73,9 @@ class Descriptor {
 };
 
 void write_and_close(Descriptor& file, std::string_view bytes, const std::string& name) {
-    if (file.get() < 0) throw system_error(name, "cannot be opened for writing", errno);
-    if (write_all(file.get(), bytes) != bytes.size()) throw system_error(name, "cannot be written", errno);
-    if (!file.close()) throw system_error(name, "cannot be closed", errno);
+    if (file.get() < 0) throw write_error(name, "cannot be opened for writing", errno);
+    if (write_all(file.get(), bytes) != bytes.size()) throw write_error(name, "cannot be written", errno);
+    if (!file.close()) throw write_error(name, "cannot be closed", errno);
 }
 
 // Opens for reading; throws where it is anything but a regular file.
@@ -113,7 +139,7 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view b
     Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
     try {
         write_and_close(file, bytes, name);
-        if (::rename(temporary.c_str(), target.c_str()) != 0) throw system_error(name, "cannot be replaced", errno);
+        if (::rename(temporary.c_str(), target.c_str()) != 0) throw write_error(name, "cannot be replaced", errno);
     } catch (...) {
         ::unlink(temporary.c_str());
         throw;
@@ -123,7 +149,9 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view b
 void create_folder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
-    if (error) throw std::runtime_error(folder.string() + ": the folder cannot be created: " + error.message());
+    if (error)
+        throw std::runtime_error(folder.string() + ": the folder cannot be created: " + error.message() +
+                                 remedy(error.value()));
     // create_directories is content where a file stands in the way under some library versions.
     if (!std::filesystem::is_directory(folder, error)) throw std::runtime_error(folder.string() + ": is not a folder");
 }
@@ -139,7 +167,7 @@ RowFile::RowFile(const std::filesystem::path& path) : name_(path == "-" ? "stand
         return;
     }
     descriptor_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_APPEND, 0666);
-    if (descriptor_ < 0) throw system_error(name_, "cannot be opened for writing", errno);
+    if (descriptor_ < 0) throw write_error(name_, "cannot be opened for writing", errno);
     owned_ = true;
 }
 
@@ -155,11 +183,11 @@ void RowFile::append(std::string_view rows) {
     struct stat status {};
     if (owned_ && done > 0 && ::fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode)) {
         if (::ftruncate(descriptor_, status.st_size - static_cast<off_t>(done)) != 0) {
-            throw system_error(name_, "cannot be written, and its last row is cut", code);
+            throw write_error(name_, "cannot be written, and its last row is cut", code);
         }
     }
     if (code == EPIPE) throw ClosedPipe(name_ + ": nobody reads it any more");
-    throw system_error(name_, "cannot be written", code);
+    throw write_error(name_, "cannot be written", code);
 }
 
 void RowFile::close() {
@@ -167,7 +195,7 @@ void RowFile::close() {
     owned_ = false;
     const int descriptor = descriptor_;
     descriptor_ = -1;
-    if (::close(descriptor) != 0) throw system_error(name_, "cannot be closed", errno);
+    if (::close(descriptor) != 0) throw write_error(name_, "cannot be closed", errno);
 }
 
 }  // namespace nearpose::data_set

@@ -203,7 +203,7 @@ int run_shell(Shell& shell, int argc, const char* const* argv) {
 }  // namespace
 
 int run_program(int argc, const char* const* argv) {
-    ignore_closed_pipes();
+    let_writes_fail();
     try {
         Shell shell;
         return run_shell(shell, argc, argv);
@@ -212,7 +212,7 @@ int run_program(int argc, const char* const* argv) {
     } catch (const BadUse& error) {
         return bad_use(error.what(), nullptr);
     } catch (const std::bad_alloc&) {
-        print_error("out of memory");
+        print_error("out of memory: end other programs, or try --threads 1 or a model of fewer triangles");
     } catch (const std::exception& error) {
         print_error(error.what());
     }

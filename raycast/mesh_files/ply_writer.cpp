@@ -1,9 +1,11 @@
 #include <unistd.h>
 
 #include <bit>
+#include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
+#include <system_error>
 
 #include "raycast/mesh_loader.hpp"
 
@@ -45,16 +47,21 @@ void write_ply(std::ostream& out, const Mesh& mesh, LengthUnit unit) {
 void save_ply(const Mesh& mesh, const std::filesystem::path& path, LengthUnit unit) {
     std::filesystem::path temporary = path;
     temporary += ".tmp" + std::to_string(::getpid());
+    errno = 0;
     std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
     if (out) write_ply(out, mesh, unit);
     // A full disk shows at the flush at the latest.
     out.close();
     std::error_code error;
-    if (out) std::filesystem::rename(temporary, path, error);
-    if (!out || error) {
-        std::filesystem::remove(temporary, error);
-        throw std::runtime_error(path.string() + ": cannot be written (does the folder exist, is the disk full?)");
-    }
+    if (out)
+        std::filesystem::rename(temporary, path, error);
+    else
+        error = {errno != 0 ? errno : EIO, std::generic_category()};
+    if (!error) return;
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    throw std::runtime_error(path.string() + ": cannot be written: " + error.message() +
+                             "; name a folder that exists, on a disk with room");
 }
 
 }  // namespace nearpose
