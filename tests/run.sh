@@ -7,7 +7,11 @@ shift || true
 bash third_party_notes/install_packages.sh build test
 cmake --preset "$preset" -DNEARPOSE_TESTS=ON >/dev/null  # the demo turns them off
 # Where the unit tests alone are asked for, the others are not built for nothing.
-[[ "$*" == "-L unit" ]] && target=unit_tests || target=all
+case "$*" in
+    "-L unit") target=unit_tests ;;
+    "-L library") target=library_tests ;;
+    *) target=all ;;
+esac
 cmake --build --preset "$preset" --target "$target"
 # Several tests run at once, each with threads of its own: a thread that waits must not keep a processor busy.
 export OMP_WAIT_POLICY=passive

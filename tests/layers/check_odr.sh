@@ -43,5 +43,5 @@ END
 self_test
 [[ ${1:-} == --self-test ]] && exit
 cmake --preset odr >/dev/null
-cmake --build --preset odr --target nearpose_core nearpose_raycast nearpose_optim nearpose_app_parts
+cmake --build --preset odr --target nearpose_core nearpose_raycast nearpose_optim nearpose_app_files nearpose_app_parts
 merge -Wl,--whole-archive build/odr/{core,raycast,optim,apps}/*.a
