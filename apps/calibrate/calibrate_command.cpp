@@ -26,7 +26,7 @@ struct CalibrateOptions {
 };
 
 // The part's place cannot be compared where the arm's poses are missing.
-void check_motion(const EstimateOptions& options, const FrameSource& source) {
+void require_arm_poses(const EstimateOptions& options, const FrameSource& source) {
     for (const FrameInfo& frame : source.frames()) {
         if (frame.camera_from_world) return;
     }
@@ -73,7 +73,7 @@ int tell(const Calibration& calibration, const FrameSource& source, const Calibr
 int calibrate_recording(const CalibrateOptions& options, const SharedOptions& shared) {
     check_input(options.input);
     const std::shared_ptr<const FrameSource> source = open_source(options.input);
-    check_motion(options.input, *source);
+    require_arm_poses(options.input, *source);
     const Mesh mesh = load_model(options.input.model, shared);
     const EstimatorSetup setup = setup_of(options.input, mesh, shared);
     const std::shared_ptr<const ViewGenerator> views = make_view_generator(setup, mesh);
