@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "core/base/check.hpp"
@@ -157,9 +158,14 @@ double unit_sigma_of(const std::vector<SightingCost>& costs, const Twist& place,
     return std::sqrt(*middle / kMedianChiSquare6);
 }
 
-// Minimises, and gives the covariance of the errors with all else free. False where either fails.
-bool solve(ceres::Problem& problem, const SetupCalibrationOptions& options, const SetupVector& errors,
-           SetupMatrix& covariance) {
+struct Solution {
+    double cost = 0.0;
+    SetupMatrix covariance;  // of the errors, with all else free
+};
+
+// Minimises. Nothing where that fails.
+std::optional<Solution> solve(ceres::Problem& problem, const SetupCalibrationOptions& options,
+                              const SetupVector& errors) {
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::DENSE_QR;
     solver.max_num_iterations = options.max_iterations;
@@ -167,14 +173,25 @@ bool solve(ceres::Problem& problem, const SetupCalibrationOptions& options, cons
     solver.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
-    if (summary.termination_type != ceres::CONVERGENCE || !errors.allFinite()) return false;
+    if (summary.termination_type != ceres::CONVERGENCE || !errors.allFinite()) return std::nullopt;
 
     ceres::Covariance::Options dense;
     dense.algorithm_type = ceres::DENSE_SVD;
     ceres::Covariance found(dense);
+    Solution solution{summary.final_cost, {}};
+    if (!found.Compute({std::make_pair<const double*, const double*>(errors.data(), errors.data())}, &problem))
+        return std::nullopt;
     // Row by row, which of a symmetric matrix is the same as column by column.
-    return found.Compute({std::make_pair<const double*, const double*>(errors.data(), errors.data())}, &problem) &&
-           found.GetCovarianceBlock(errors.data(), errors.data(), covariance.data());
+    if (!found.GetCovarianceBlock(errors.data(), errors.data(), solution.covariance.data())) return std::nullopt;
+    return solution;
+}
+
+// The place's part of the posterior does not depend on the prior of the errors.
+double log_evidence_of(const Solution& solution, const SetupVector& prior_sigma) {
+    const SetupMatrix in_sigmas =
+        prior_sigma.cwiseInverse().asDiagonal() * solution.covariance * prior_sigma.cwiseInverse().asDiagonal();
+    const Eigen::LDLT<SetupMatrix> factor(in_sigmas);
+    return -solution.cost + 0.5 * factor.vectorD().array().max(1e-300).log().sum();
 }
 
 }  // namespace
@@ -223,8 +240,10 @@ SetupCalibration calibrate_setup(const std::vector<Sighting>& sightings, const E
     problem.AddResidualBlock(
         new ceres::AutoDiffCostFunction<PriorCost, kSetupUnknowns, kSetupUnknowns>(new PriorCost(options)), nullptr,
         errors.data());
-    SetupMatrix found;
-    if (!solve(problem, options, errors, found)) return result;
+    const std::optional<Solution> solution = solve(problem, options, errors);
+    if (!solution) return result;
+    const SetupMatrix& found = solution->covariance;
+    result.log_evidence = log_evidence_of(*solution, options.prior_sigma);
     result.unit_sigma = unit_sigma_of(costs, place, errors);
     result.errors = errors;
     // The prior's share does not grow: no sigma exceeds it.

@@ -48,6 +48,8 @@ struct SetupCalibration {
     // By how much larger the sightings scatter about the solution than their covariances say, by the median. Where it
     // is far above 1, something else is wrong, or the part moved; the covariance is larger by its square.
     double unit_sigma = 0.0;
+    // How likely the sightings are under this prior, but for what all priors share [nats] (Laplace's approximation).
+    double log_evidence = 0.0;
 };
 
 // Maximum a posteriori of the unknowns and of the part's place. For each sighting, with the twist about the model's

@@ -22,7 +22,7 @@ struct CalibrateOptions {
     EstimateOptions input;
     std::filesystem::path out;
     int passes = CalibrationOptions{}.passes;
-    std::vector<std::string> unknown = setup_parts();
+    std::vector<std::string> unknown;  // none: the recording decides
 };
 
 // The part's place cannot be compared where the arm's poses are missing.
@@ -36,9 +36,12 @@ void require_arm_poses(const EstimateOptions& options, const FrameSource& source
 }
 
 std::string headline(const Calibration& calibration) {
+    std::string parts;
+    for (const std::string& part : calibration.unknown) parts += (parts.empty() ? "" : ", ") + part;
     return "set-up from " + std::to_string(calibration.sightings) + " sightings of the part in " +
            std::to_string(calibration.frames) + " frames; they scatter " +
-           data_set::format_fixed(calibration.unit_sigma, 1) + " times as far as their covariances say\n";
+           data_set::format_fixed(calibration.unit_sigma, 1) + " times as far as their covariances say\n" +
+           (parts.empty() ? std::string("nothing seems at fault\n") : "what may be at fault: " + parts + "\n");
 }
 
 int tell(const Calibration& calibration, const FrameSource& source, const CalibrateOptions& options,
@@ -79,7 +82,7 @@ int calibrate_recording(const CalibrateOptions& options, const SharedOptions& sh
     const std::shared_ptr<const ViewGenerator> views = make_view_generator(setup, mesh);
     CalibrationOptions calibration;
     calibration.passes = options.passes;
-    calibration.prior_sigma = prior_with_unknown(options.unknown);
+    if (!options.unknown.empty()) calibration.unknown = options.unknown;
     Progress progress("calibrate", options.passes * static_cast<int>(source->frames().size()), shared.quiet);
     const Calibration found = calibrate(
         source, extent_of(mesh).centre_in_object(), setup, views,

@@ -86,7 +86,7 @@ SetupFinding finding_of(double error, double sigma, double prior_sigma) {
 }
 
 std::string setup_table(const Calibration& calibration) {
-    const SetupVector errors = in_order(calibration.errors, calibration.frame_s);
+    const SetupVector& errors = calibration.estimate;
     const std::array<Quantity, kSetupUnknowns> shown = quantities(calibration.frame_s);
     std::string text = "given is larger than true by        error    1 sigma     before\n";
     for (Eigen::Index i = 0; i < kSetupUnknowns; ++i) {
@@ -102,7 +102,7 @@ std::string setup_table(const Calibration& calibration) {
 }
 
 std::string advice_of(const Calibration& calibration, const PinholeCamera& given) {
-    const SetupVector errors = in_order(calibration.errors, calibration.frame_s);
+    const SetupVector errors = in_order(calibration.errors, calibration.frame_s);  // of what is at fault
     const auto contradicted = [&](Eigen::Index first, Eigen::Index count) {
         return any_contradicted(calibration, errors, first, count);
     };

@@ -120,7 +120,8 @@ void note_scale(const FrameInfo& frame, const FrameData& data, const Mesh& mesh,
                 Tally& tally) {
     if (tally.frames > tally.unread || data.depth.depth_m.empty()) return;
     const std::string doubt = scale_doubt(data.depth, data.mask ? &*data.mask : nullptr, frame.camera, extent_of(mesh));
-    if (!doubt.empty()) note(frame.id, doubt, "", shared, tally);
+    for (const std::string& text : {doubt, decimation_doubt(data.depth)})
+        if (!text.empty()) note(frame.id, text, "", shared, tally);
 }
 
 void run_frame(const RunContext& run, std::size_t index, PoseEstimator& estimator, EstimateOutputs& outputs,
@@ -216,7 +217,9 @@ std::shared_ptr<const FrameSource> with_right_setup(const std::shared_ptr<const 
         print_notice("--self-calibrate: the recording does not show its set-up; it is taken as given", shared.quiet);
         return given;
     }
-    print_notice("--self-calibrate: " + in_one_line(found), shared.quiet);
+    print_notice(
+        "--self-calibrate: " + (found.unknown.empty() ? std::string("nothing seems at fault") : in_one_line(found)),
+        shared.quiet);
     return corrected_source(given, found.errors);
 }
 

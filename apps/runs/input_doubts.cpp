@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -105,6 +106,30 @@ std::string doubt_of_masked(const Masked& masked, const PinholeCamera& camera, c
            millimetres(extent.diameter_m()) + kScaleAdvice;
 }
 
+// Of the changes of depth between neighbours along one side of the image, by the place of the later pixel.
+std::vector<int> changes_along(const DepthImage& depth, bool columns) {
+    std::vector<int> changes(static_cast<std::size_t>(columns ? depth.width : depth.height), 0);
+    for (int v = columns ? 0 : 1; v < depth.height; ++v) {
+        for (int u = columns ? 1 : 0; u < depth.width; ++u) {
+            const std::size_t now = static_cast<std::size_t>(v) * depth.width + u;
+            const float here = depth.depth_m[now], before = depth.depth_m[columns ? now - 1 : now - depth.width];
+            if (here > 0.0F && before > 0.0F && here != before) ++changes[columns ? u : v];
+        }
+    }
+    return changes;
+}
+
+// Whether nearly all lie a whole number of `step` apart.
+bool all_in_steps(const std::vector<int>& changes, int step) {
+    constexpr int kLeast = 500;
+    constexpr double kNearlyAll = 0.98;
+    std::vector<int> by_place(static_cast<std::size_t>(step), 0);
+    for (std::size_t i = 0; i < changes.size(); ++i) by_place[i % by_place.size()] += changes[i];
+    const int most = *std::max_element(by_place.begin(), by_place.end());
+    const int all = std::accumulate(by_place.begin(), by_place.end(), 0);
+    return all >= kLeast && most >= kNearlyAll * all;
+}
+
 }  // namespace
 
 std::string camera_doubt(const PinholeCamera& camera) {
@@ -136,6 +161,18 @@ std::string mask_doubt(const DepthImage& depth, const Mask& mask) {
     if (share < kLeast || share > kMost || !inner_m || (outer_m && *inner_m > kNearer * *outer_m)) return {};
     return "the mask covers everything but " + format_fixed(100.0 * share, 1) +
            " % of the image, which is nearer than the rest: is it inverted?";
+}
+
+std::string decimation_doubt(const DepthImage& depth) {
+    constexpr int kLargestStep = 8;
+    const std::vector<int> along_rows = changes_along(depth, true), along_columns = changes_along(depth, false);
+    for (int step = kLargestStep; step > 1; --step) {
+        if (!all_in_steps(along_rows, step) || !all_in_steps(along_columns, step)) continue;
+        return "depth changes only where blocks of " + size_text(step, step) +
+               " pixels meet: turn the sensor's decimation filter off, or give its small images and their "
+               "intrinsics";
+    }
+    return {};
 }
 
 std::string scale_doubt(const DepthImage& depth, const Mask* mask, const PinholeCamera& camera,

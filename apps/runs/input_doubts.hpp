@@ -23,4 +23,8 @@ std::string mask_doubt(const DepthImage& depth, const Mask& mask);
 std::string scale_doubt(const DepthImage& depth, const Mask* mask, const PinholeCamera& camera,
                         const ModelExtent& extent);
 
+// Where depth changes at every second, third ... eighth column and row alone: it was measured at a fraction of the
+// image's resolution, as sensors' decimation filters do, and enlarged.
+std::string decimation_doubt(const DepthImage& depth);
+
 }  // namespace nearpose::program

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -81,12 +82,42 @@ Tracked track(const FrameSource& source, double frame_s, PoseEstimator estimator
     return tracked;
 }
 
-bool is_done(const SetupCalibration& left, double done_sigmas) {
-    const SetupVector sigma = left.covariance.diagonal().cwiseSqrt();
-    return (left.errors.cwiseAbs().array() < done_sigmas * sigma.array()).all();
+bool is_done(const SetupVector& left, const SetupVector& sigma, double done_sigmas) {
+    return (left.cwiseAbs().array() < done_sigmas * sigma.array()).all();
+}
+
+SetupCalibration solved_with(const std::vector<std::string>& unknown, const std::vector<Sighting>& sightings,
+                             const Eigen::Vector3d& centre_in_object, const SetupVector& prior_mean) {
+    SetupCalibrationOptions solver;
+    solver.prior_sigma = prior_with_unknown(unknown);
+    solver.prior_mean = prior_mean;
+    return calibrate_setup(sightings, centre_in_object, solver);
 }
 
 }  // namespace
+
+std::vector<std::string> parts_at_fault(const std::vector<Sighting>& sightings, const Eigen::Vector3d& centre_in_object,
+                                        const SetupVector& prior_mean, double min_log_odds) {
+    std::vector<std::string> chosen;
+    SetupCalibration before = solved_with(chosen, sightings, centre_in_object, prior_mean);
+    while (chosen.size() < setup_parts().size()) {
+        std::vector<std::pair<double, std::string>> gains;
+        for (const std::string& part : setup_parts()) {
+            if (std::find(chosen.begin(), chosen.end(), part) != chosen.end()) continue;
+            std::vector<std::string> with = chosen;
+            with.push_back(part);
+            const SetupCalibration found = solved_with(with, sightings, centre_in_object, prior_mean);
+            if (found.solved) gains.emplace_back(found.log_evidence - before.log_evidence, part);
+        }
+        if (!before.solved || gains.empty()) break;
+        const double most = std::max_element(gains.begin(), gains.end())->first;
+        if (most < min_log_odds) break;
+        for (const auto& [gain, part] : gains)
+            if (gain > std::max(min_log_odds, most - min_log_odds)) chosen.push_back(part);
+        before = solved_with(chosen, sightings, centre_in_object, prior_mean);
+    }
+    return chosen;
+}
 
 Calibration calibrate(const std::shared_ptr<const FrameSource>& given, const Eigen::Vector3d& centre_in_object,
                       const EstimatorSetup& setup, const std::shared_ptr<const ViewGenerator>& views,
@@ -98,24 +129,29 @@ Calibration calibrate(const std::shared_ptr<const FrameSource>& given, const Eig
     Calibration calibration;
     calibration.frames = static_cast<int>(given->frames().size());
     calibration.frame_s = usual_step_s(*given);
-    calibration.prior_sigma = options.prior_sigma;
-    calibration.sigma = options.prior_sigma;
     const double frame_s = calibration.frame_s > 0.0 ? calibration.frame_s : 1.0;
     for (int pass = 0; pass < options.passes; ++pass) {
         const Tracked tracked = track(*corrected_source(given, calibration.errors), frame_s, start, frame_done);
         calibration.mistake = tracked.mistake;
         if (!tracked.complete) return calibration;
-        SetupCalibrationOptions solver;
-        solver.prior_sigma = options.prior_sigma;
-        solver.prior_mean = -in_order(calibration.errors, frame_s);  // the whole error is about zero
-        const SetupCalibration left = calibrate_setup(tracked.sightings, centre_in_object, solver);
+        const SetupVector mean = -in_order(calibration.errors, frame_s);  // the whole error is about zero
+        if (pass == 0) {
+            calibration.unknown = options.unknown
+                                      ? *options.unknown
+                                      : parts_at_fault(tracked.sightings, centre_in_object, mean, options.min_log_odds);
+            calibration.prior_sigma = prior_with_unknown(calibration.unknown);
+        }
+        const SetupCalibration left = solved_with(calibration.unknown, tracked.sightings, centre_in_object, mean);
         calibration.sightings = left.sightings;
         if (!left.solved) return calibration;
-        calibration.errors = composed(calibration.errors, errors_of(left.errors, frame_s));
+        calibration.errors =
+            composed(calibration.errors, errors_of(only_of(calibration.unknown, left.errors), frame_s));
+        calibration.estimate =
+            in_order(calibration.errors, frame_s) + left.errors - only_of(calibration.unknown, left.errors);
         calibration.sigma = left.covariance.diagonal().cwiseSqrt();
         calibration.unit_sigma = left.unit_sigma;
         calibration.solved = true;
-        if (is_done(left, options.done_sigmas)) break;
+        if (is_done(only_of(calibration.unknown, left.errors), calibration.sigma, options.done_sigmas)) break;
     }
     return calibration;
 }

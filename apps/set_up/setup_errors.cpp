@@ -33,21 +33,34 @@ const std::vector<std::string>& setup_parts() {
     return parts;
 }
 
-SetupVector prior_with_unknown(const std::vector<std::string>& parts) {
-    const std::array<std::pair<Eigen::Index, Eigen::Index>, 5> places = {{{kFocalLengthError, 1},
-                                                                          {kImageColumns, 2},
-                                                                          {kDepthScaleError, 1},
-                                                                          {kHandEyeTurn, 6},
-                                                                          {kTimeOffset, 1}}};  // first and count
-    const SetupVector wide = in_order(StillWorldOptions{}.faulty);
-    SetupVector sigma = in_order(StillWorldOptions{}.usual);
+namespace {
+
+// First and count of a part's unknowns.
+std::pair<Eigen::Index, Eigen::Index> place_of(const std::string& part) {
+    constexpr std::array<std::pair<Eigen::Index, Eigen::Index>, 5> kPlaces = {
+        {{kFocalLengthError, 1}, {kImageColumns, 2}, {kDepthScaleError, 1}, {kHandEyeTurn, 6}, {kTimeOffset, 1}}};
+    const auto found = std::find(setup_parts().begin(), setup_parts().end(), part);
+    if (found == setup_parts().end()) throw std::invalid_argument("no part of a set-up is called '" + part + "'");
+    return kPlaces[static_cast<std::size_t>(found - setup_parts().begin())];
+}
+
+// `values` for the parts, `others` for the rest.
+SetupVector mixed(const std::vector<std::string>& parts, const SetupVector& values, SetupVector others) {
     for (const std::string& part : parts) {
-        const auto found = std::find(setup_parts().begin(), setup_parts().end(), part);
-        if (found == setup_parts().end()) throw std::invalid_argument("no part of a set-up is called '" + part + "'");
-        const auto [first, count] = places[static_cast<std::size_t>(found - setup_parts().begin())];
-        sigma.segment(first, count) = wide.segment(first, count);
+        const auto [first, count] = place_of(part);
+        others.segment(first, count) = values.segment(first, count);
     }
-    return sigma;
+    return others;
+}
+
+}  // namespace
+
+SetupVector prior_with_unknown(const std::vector<std::string>& parts) {
+    return mixed(parts, in_order(StillWorldOptions{}.faulty), in_order(StillWorldOptions{}.usual));
+}
+
+SetupVector only_of(const std::vector<std::string>& parts, const SetupVector& errors) {
+    return mixed(parts, errors, SetupVector::Zero());
 }
 
 SetupErrors composed(const SetupErrors& first, const SetupErrors& left) {

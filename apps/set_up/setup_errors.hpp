@@ -30,6 +30,9 @@ const std::vector<std::string>& setup_parts();
 // Throws std::invalid_argument for a name that is none of them.
 SetupVector prior_with_unknown(const std::vector<std::string>& parts);
 
+// The errors of those parts; zeros for the others. Throws as above.
+SetupVector only_of(const std::vector<std::string>& parts, const SetupVector& errors);
+
 // Errors that were found first, and then those that were left after their correction.
 SetupErrors composed(const SetupErrors& first, const SetupErrors& left);
 

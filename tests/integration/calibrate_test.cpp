@@ -39,7 +39,8 @@ struct Trial {
     program::Calibration found;
 };
 
-Trial calibrated(const simulate::ArmErrors& arm, const std::vector<std::string>& faults, const SetupErrors& camera) {
+Trial calibrated(const simulate::ArmErrors& arm, const std::vector<std::string>& faults, const SetupErrors& camera,
+                 const program::CalibrationOptions& how) {
     const Mesh mesh = simulate::embedded_part("engine_block").mesh;
     simulate::RecordingOptions options;
     options.num_frames = 40;
@@ -53,16 +54,16 @@ Trial calibrated(const simulate::ArmErrors& arm, const std::vector<std::string>&
     trial.truth = camera;
     trial.truth.given_from_camera = simulate::hand_eye_error(arm, options.seed);
     trial.truth.time_offset_s = arm.time_offset_s;
-    trial.found =
-        program::calibrate(std::make_shared<const RecordingSource>(recording), extent_of(mesh).centre_in_object(),
-                           setup, program::make_view_generator(setup, mesh), [] { return true; });
+    trial.found = program::calibrate(
+        std::make_shared<const RecordingSource>(recording), extent_of(mesh).centre_in_object(), setup,
+        program::make_view_generator(setup, mesh), [] { return true; }, how);
     return trial;
 }
 
 void expect_within(const Trial& trial, double sigmas) {
     ASSERT_TRUE(trial.found.solved);
     const double frame_s = trial.found.frame_s;
-    const SetupVector off = program::in_order(trial.found.errors, frame_s) - program::in_order(trial.truth, frame_s);
+    const SetupVector off = trial.found.estimate - program::in_order(trial.truth, frame_s);
     for (Eigen::Index i = 0; i < kSetupUnknowns; ++i) {
         EXPECT_LT(std::abs(off[i]), sigmas * trial.found.sigma[i]) << "unknown " << i;
         EXPECT_LE(trial.found.sigma[i], trial.found.prior_sigma[i] * (1.0 + 1e-9)) << "unknown " << i;
@@ -78,7 +79,10 @@ TEST(Calibrate, FindsTheErrorsThatWerePutIn) {
     camera.focal_length = 0.015;
     camera.depth_scale = -0.012;
     camera.principal_point_pixels.x() = -4.0;
-    const Trial trial = calibrated(arm, {"focal:1.5@all", "depth-scale:-1.2@all", "principal-point:-4@all"}, camera);
+    program::CalibrationOptions all_unknown;
+    all_unknown.unknown = program::setup_parts();
+    const Trial trial =
+        calibrated(arm, {"focal:1.5@all", "depth-scale:-1.2@all", "principal-point:-4@all"}, camera, all_unknown);
     expect_within(trial, 3.5);
     // What this motion shows is known far better than before.
     for (const Eigen::Index i :
@@ -86,8 +90,18 @@ TEST(Calibrate, FindsTheErrorsThatWerePutIn) {
         EXPECT_LT(trial.found.sigma[i], 0.3 * trial.found.prior_sigma[i]) << "unknown " << i;
 }
 
-TEST(Calibrate, AGoodSetUpStaysAsItIs) {
-    expect_within(calibrated({}, {}, {}), 3.5);
+TEST(Calibrate, OnlyWhatIsAtFaultIsCorrected) {
+    const Trial good = calibrated({}, {}, {}, {});
+    expect_within(good, 3.5);
+    EXPECT_TRUE(good.found.unknown.empty());
+    EXPECT_EQ(program::in_order(good.found.errors, 1.0), SetupVector::Zero());
+    simulate::ArmErrors arm;
+    arm.time_offset_s = 0.04;
+    const Trial late = calibrated(arm, {}, {}, {});
+    expect_within(late, 3.5);
+    EXPECT_EQ(late.found.unknown, std::vector<std::string>{"time"});
+    EXPECT_NEAR(late.found.errors.time_offset_s, arm.time_offset_s, 0.004);
+    EXPECT_EQ(late.found.errors.focal_length, 0.0);
 }
 
 }  // namespace

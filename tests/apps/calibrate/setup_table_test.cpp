@@ -17,9 +17,10 @@ Calibration with_error(Eigen::Index unknown, double error) {
     errors[unknown] = error;
     Calibration calibration;
     calibration.frame_s = 0.1;
-    calibration.prior_sigma = CalibrationOptions{}.prior_sigma;
+    calibration.prior_sigma = prior_with_unknown(setup_parts());
     calibration.sigma = 0.1 * calibration.prior_sigma;
     calibration.errors = errors_of(errors, calibration.frame_s);
+    calibration.estimate = errors;
     return calibration;
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/apps/support/contains.hpp"
 
 namespace nearpose::program {
@@ -94,6 +96,29 @@ TEST(InputDoubts, ASceneThatCannotHoldThePartIsAskedAbout) {
     EXPECT_TRUE(contains(doubt, "implausibly small")) << doubt;
     EXPECT_TRUE(contains(doubt, "1000 mm")) << doubt;
     EXPECT_EQ(scale_doubt({640, 480, std::vector<float>(640 * 480, 0.0F)}, nullptr, kCamera, box(1.6, 1, 1)), "");
+}
+
+// A slanted plane in millimetres, measured at every `step`th pixel and enlarged from `first` on.
+DepthImage enlarged(int step, int first) {
+    DepthImage depth{160, 120, std::vector<float>(160 * 120)};
+    for (int v = 0; v < depth.height; ++v) {
+        for (int u = 0; u < depth.width; ++u) {
+            const int column = (u + first) / step * step, row = (v + first) / step * step;
+            depth.depth_m[v * depth.width + u] =
+                static_cast<float>(1e-3 * std::round(400.0 + 0.7 * column + 1.3 * row));
+        }
+    }
+    return depth;
+}
+
+TEST(InputDoubts, ImagesThatWereEnlargedAreNamed) {
+    EXPECT_TRUE(contains(decimation_doubt(enlarged(2, 0)), "blocks of 2 x 2 pixels"));
+    EXPECT_TRUE(contains(decimation_doubt(enlarged(4, 3)), "blocks of 4 x 4 pixels"));
+    EXPECT_TRUE(contains(decimation_doubt(enlarged(8, 0)), "blocks of 8 x 8 pixels"));
+    EXPECT_EQ(decimation_doubt(enlarged(1, 0)), "") << "quantised, but at full resolution";
+    EXPECT_EQ(decimation_doubt({}), "");
+    EXPECT_EQ(decimation_doubt({160, 120, std::vector<float>(160 * 120, 1.0F)}), "") << "a wall that is straight ahead";
+    EXPECT_EQ(decimation_doubt({160, 120, std::vector<float>(160 * 120, 0.0F)}), "");
 }
 
 }  // namespace

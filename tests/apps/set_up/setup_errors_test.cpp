@@ -58,6 +58,9 @@ TEST(SetupErrors, OnlyWhatMayBeAtFaultHasAWidePrior) {
         EXPECT_EQ(hand_eye[i], is_wide ? wide[i] : usual[i]) << i;
     }
     EXPECT_THROW(prior_with_unknown({"lens"}), std::invalid_argument);
+    SetupVector time = SetupVector::Zero();
+    time[kTimeOffset] = some_errors()[kTimeOffset];
+    EXPECT_EQ(only_of({"time"}, some_errors()), time);
 }
 
 }  // namespace
