@@ -122,12 +122,15 @@ class PriorCost {
     SetupVector mean_, sigma_;
 };
 
-// Of one mode alone: before, the part was taken to lie otherwise.
-std::vector<Sighting> of_last_mode(const std::vector<Sighting>& sightings) {
-    const auto changed =
-        std::find_if(sightings.rbegin(), sightings.rend(), [](const Sighting& s) { return s.other_mode; });
-    const auto begin = changed == sightings.rend() ? sightings.begin() : changed.base() - 1;
-    return {begin, sightings.end()};
+// The longest run in which one mode was tracked: in the others the part was taken to lie otherwise.
+std::vector<Sighting> of_longest_mode(const std::vector<Sighting>& sightings) {
+    auto best = sightings.begin(), best_end = sightings.begin();
+    for (auto begin = sightings.begin(); begin != sightings.end();) {
+        const auto end = std::find_if(begin + 1, sightings.end(), [](const Sighting& s) { return s.other_mode; });
+        if (end - begin >= best_end - best) best = begin, best_end = end;
+        begin = end;
+    }
+    return {best, best_end};
 }
 
 // The place of the sighting that most others are near: one that is wrong is no start.
@@ -221,7 +224,7 @@ SetupCalibration calibrate_setup(const std::vector<Sighting>& sightings, const E
     SetupCalibration result;
     result.errors = options.prior_mean;
     result.covariance = options.prior_sigma.cwiseAbs2().asDiagonal();
-    const std::vector<Sighting> taken = of_last_mode(sightings);
+    const std::vector<Sighting> taken = of_longest_mode(sightings);
     result.sightings = static_cast<int>(taken.size());
     if (result.sightings < options.min_sightings) return result;
 

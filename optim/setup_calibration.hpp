@@ -56,7 +56,7 @@ struct SetupCalibration {
 // centre in object axes:
 //   twist(arm_from_object, arm_from_given exp(-time * motion) given_from_camera camera_from_object exp(-effect *
 //   errors))
-// is noise of the sighting's covariance. Sightings before the last change of the mode are left out.
+// is noise of the sighting's covariance. Only the longest run of sightings of one mode takes part.
 SetupCalibration calibrate_setup(const std::vector<Sighting>& sightings, const Eigen::Vector3d& centre_in_object,
                                  const SetupCalibrationOptions& options = {});
 
