@@ -94,6 +94,13 @@ SetupCalibration solved_with(const std::vector<std::string>& unknown, const std:
     return calibrate_setup(sightings, centre_in_object, solver);
 }
 
+// Whether an error of the part is told from zero though it was taken to be as good as usual.
+bool is_contradicted(const std::string& part, const SetupCalibration& found) {
+    constexpr double kToldApart = 3.0;
+    const SetupVector errors = only_of({part}, found.errors);
+    return (errors.cwiseAbs2().array() > kToldApart * kToldApart * found.covariance.diagonal().array()).any();
+}
+
 }  // namespace
 
 std::vector<std::string> parts_at_fault(const std::vector<Sighting>& sightings, const Eigen::Vector3d& centre_in_object,
@@ -111,9 +118,12 @@ std::vector<std::string> parts_at_fault(const std::vector<Sighting>& sightings, 
         }
         if (!before.solved || gains.empty()) break;
         const double most = std::max_element(gains.begin(), gains.end())->first;
-        if (most < min_log_odds) break;
-        for (const auto& [gain, part] : gains)
-            if (gain > std::max(min_log_odds, most - min_log_odds)) chosen.push_back(part);
+        const std::size_t chosen_before = chosen.size();
+        for (const auto& [gain, part] : gains) {
+            const bool likely = gain > std::max(min_log_odds, most - min_log_odds);
+            if (likely || (most < min_log_odds && is_contradicted(part, before))) chosen.push_back(part);
+        }
+        if (chosen.size() == chosen_before) break;
         before = solved_with(chosen, sightings, centre_in_object, prior_mean);
     }
     return chosen;
