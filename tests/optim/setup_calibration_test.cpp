@@ -12,25 +12,12 @@ namespace nearpose {
 namespace {
 
 constexpr int kFrames = 60;
-constexpr double kFocal_pixels = 600.0;
 
 // A camera that swings about the part while it approaches, so that every unknown has an effect of its own.
 Pose swinging(double frame) {
     const double t = 0.04 * frame;
     return exp(twist_of(0.25 * std::sin(t), 0.25 * std::cos(1.3 * t), 0.4 * std::sin(0.7 * t), 0.06 * std::sin(1.1 * t),
                         0.05 * std::cos(0.9 * t), -0.005 * frame));
-}
-
-// What errors of the camera do to a fit that follows the measured points: they shift its centre.
-SetupEffect effect_at(const Pose& camera_from_object) {
-    const Eigen::Vector3d centre = camera_from_object * kCentre;
-    const Eigen::Matrix3d object_from_camera = camera_from_object.rotation_matrix().transpose();
-    SetupEffect effect = SetupEffect::Zero();
-    effect.col(kFocalLengthError).tail<3>() = object_from_camera * Eigen::Vector3d(-centre.x(), -centre.y(), 0.0);
-    effect.col(kImageColumns).tail<3>() = object_from_camera * Eigen::Vector3d(-centre.z() / kFocal_pixels, 0.0, 0.0);
-    effect.col(kImageRows).tail<3>() = object_from_camera * Eigen::Vector3d(0.0, -centre.z() / kFocal_pixels, 0.0);
-    effect.col(kDepthScaleError).tail<3>() = object_from_camera * centre;
-    return effect;
 }
 
 struct World {

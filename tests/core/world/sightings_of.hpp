@@ -31,6 +31,21 @@ inline JointFit fit_at(const Pose& camera_from_object) {
     return fit;
 }
 
+inline constexpr double kFocal_pixels = 600.0;
+
+// What an error of the principal point or of the depth's scale does to a fit that follows the points: the shift of the
+// centre grows with its distance.
+inline SetupEffect effect_at(const Pose& camera_from_object) {
+    const Eigen::Vector3d centre = camera_from_object * kCentre;
+    const Eigen::Matrix3d object_from_camera = camera_from_object.rotation_matrix().transpose();
+    SetupEffect effect = SetupEffect::Zero();
+    effect.col(kFocalLengthError).tail<3>() = object_from_camera * Eigen::Vector3d(-centre.x(), -centre.y(), 0.0);
+    effect.col(kImageColumns).tail<3>() = object_from_camera * Eigen::Vector3d(-centre.z() / kFocal_pixels, 0.0, 0.0);
+    effect.col(kImageRows).tail<3>() = object_from_camera * Eigen::Vector3d(0.0, -centre.z() / kFocal_pixels, 0.0);
+    effect.col(kDepthScaleError).tail<3>() = object_from_camera * centre;
+    return effect;
+}
+
 // What `seen` gives of each frame as the part's pose in the camera, while `given` says what the arm reports of the
 // motion from the frame before.
 template <class Seen, class Given>
