@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the packages of packages.txt that are missing. usage: install_packages.sh KIND... (build, stereo, images, test, bench, check)
+# Installs the packages of packages.txt that are missing. usage: install_packages.sh KIND... (build, stereo, images, test, bench, check, nightly)
 # Does nothing, and needs no rights, where all are there.
 set -euo pipefail
 list=$(dirname "${BASH_SOURCE[0]}")/packages.txt
