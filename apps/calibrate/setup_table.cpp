@@ -1,6 +1,7 @@
 #include "apps/calibrate/setup_table.hpp"
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -66,6 +67,18 @@ bool any_contradicted(const Calibration& calibration, const SetupVector& errors,
     return false;
 }
 
+// Parts that are contradicted though they were taken to be as good as usual.
+std::string contradicted_beside(const Calibration& calibration) {
+    std::string names;
+    for (const std::string& part : setup_parts()) {
+        const auto& unknown = calibration.unknown;
+        if (std::find(unknown.begin(), unknown.end(), part) != unknown.end()) continue;
+        if (any_contradicted(calibration, only_of({part}, calibration.estimate), 0, kSetupUnknowns))
+            names += (names.empty() ? "" : ", ") + part;
+    }
+    return names;
+}
+
 std::string matrix_rows(const Pose& pose) {
     const Eigen::Matrix3d rotation = pose.rotation_matrix();
     std::string text;
@@ -80,8 +93,8 @@ std::string matrix_rows(const Pose& pose) {
 }  // namespace
 
 SetupFinding finding_of(double error, double sigma, double prior_sigma) {
-    constexpr double kNothingLearned = 0.8, kToldApart = 3.0;
-    if (std::abs(error) > kToldApart * sigma) return SetupFinding::kContradicted;
+    constexpr double kNothingLearned = 0.8;
+    if (is_told_from_zero(error, sigma)) return SetupFinding::kContradicted;
     return sigma > kNothingLearned * prior_sigma ? SetupFinding::kNotShown : SetupFinding::kAsGiven;
 }
 
@@ -126,6 +139,9 @@ std::string advice_of(const Calibration& calibration, const PinholeCamera& given
         text += "- clocks: take the arm's pose of " +
                 format_fixed(kMilliseconds * std::abs(calibration.errors.time_offset_s), 1) + " ms " +
                 (calibration.errors.time_offset_s > 0.0 ? "earlier" : "later") + " for each image\n";
+    const std::string others = contradicted_beside(calibration);
+    if (!others.empty())
+        text += "- the recording contradicts " + others + " too, which may not be at fault: add it to --unknown\n";
     return text.empty() ? "nothing to change\n" : "to change:\n" + text;
 }
 

@@ -1,6 +1,7 @@
 #include "apps/set_up/calibration.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <string>
 #include <utility>
@@ -96,9 +97,10 @@ SetupCalibration solved_with(const std::vector<std::string>& unknown, const std:
 
 // Whether an error of the part is told from zero though it was taken to be as good as usual.
 bool is_contradicted(const std::string& part, const SetupCalibration& found) {
-    constexpr double kToldApart = 3.0;
     const SetupVector errors = only_of({part}, found.errors);
-    return (errors.cwiseAbs2().array() > kToldApart * kToldApart * found.covariance.diagonal().array()).any();
+    for (Eigen::Index i = 0; i < kSetupUnknowns; ++i)
+        if (is_told_from_zero(errors[i], std::sqrt(found.covariance(i, i)))) return true;
+    return false;
 }
 
 }  // namespace
@@ -138,11 +140,13 @@ Calibration calibrate(const std::shared_ptr<const FrameSource>& given, const Eig
     const PoseEstimator start = make_estimator(keeping_all, views);
     Calibration calibration;
     calibration.frames = static_cast<int>(given->frames().size());
-    calibration.frame_s = usual_step_s(*given);
-    const double frame_s = calibration.frame_s > 0.0 ? calibration.frame_s : 1.0;
+    const double step_s = usual_step_s(*given);
+    const double frame_s = step_s > 0.0 ? step_s : 1.0;  // without times nothing shows the time between arm and image
+    calibration.frame_s = frame_s;
     for (int pass = 0; pass < options.passes; ++pass) {
         const Tracked tracked = track(*corrected_source(given, calibration.errors), frame_s, start, frame_done);
         calibration.mistake = tracked.mistake;
+        calibration.solved = false;
         if (!tracked.complete) return calibration;
         const SetupVector mean = -in_order(calibration.errors, frame_s);  // the whole error is about zero
         if (pass == 0) {

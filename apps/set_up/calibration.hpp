@@ -42,7 +42,7 @@ struct Calibration {
     MotionMistake mistake = MotionMistake::kNone;
 };
 
-// Called after each frame; false: stop, nothing is solved.
+// Called after each frame; false: stop, and the calibration is not solved.
 using FrameDone = std::function<bool()>;
 
 // The parts of a set-up whose fault makes the sightings likelier, one after the other; `prior_mean` of the errors.
@@ -54,7 +54,7 @@ Calibration calibrate(const std::shared_ptr<const FrameSource>& given, const Eig
                       const EstimatorSetup& setup, const std::shared_ptr<const ViewGenerator>& views,
                       const FrameDone& frame_done, const CalibrationOptions& options = {});
 
-// The largest figures: "focal length +0.98 %, principal point 4.9 px, ... off".
+// What is corrected: "off by: focal length 0.98 %, principal point 4.9 px, ...".
 std::string in_one_line(const Calibration& calibration);
 
 }  // namespace nearpose::program

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -61,6 +62,11 @@ SetupVector prior_with_unknown(const std::vector<std::string>& parts) {
 
 SetupVector only_of(const std::vector<std::string>& parts, const SetupVector& errors) {
     return mixed(parts, errors, SetupVector::Zero());
+}
+
+bool is_told_from_zero(double error, double sigma) {
+    constexpr double kSigmas = 3.0;
+    return std::abs(error) > kSigmas * sigma;
 }
 
 SetupErrors composed(const SetupErrors& first, const SetupErrors& left) {

@@ -33,6 +33,9 @@ SetupVector prior_with_unknown(const std::vector<std::string>& parts);
 // The errors of those parts; zeros for the others. Throws as above.
 SetupVector only_of(const std::vector<std::string>& parts, const SetupVector& errors);
 
+// Whether an error is told from zero.
+bool is_told_from_zero(double error, double sigma);
+
 // Errors that were found first, and then those that were left after their correction.
 SetupErrors composed(const SetupErrors& first, const SetupErrors& left);
 

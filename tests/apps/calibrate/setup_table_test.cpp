@@ -21,6 +21,7 @@ Calibration with_error(Eigen::Index unknown, double error) {
     calibration.sigma = 0.1 * calibration.prior_sigma;
     calibration.errors = errors_of(errors, calibration.frame_s);
     calibration.estimate = errors;
+    calibration.unknown = setup_parts();
     return calibration;
 }
 
@@ -49,6 +50,12 @@ TEST(SetupTable, AdviceSaysWhatToWriteInstead) {
     EXPECT_TRUE(contains(advice_of(with_error(kDepthScaleError, 0.25), kGiven), "depth_scale by 0.80000"));
     EXPECT_TRUE(contains(advice_of(with_error(kTimeOffset, 1.5), kGiven), "150.0 ms earlier"));
     EXPECT_TRUE(contains(advice_of(with_error(kTimeOffset, -1.5), kGiven), "150.0 ms later"));
+    // What may not be at fault is not advised on, but named.
+    Calibration other = with_error(kTimeOffset, 1.5);
+    other.unknown = {"focal"};
+    other.errors = {};
+    EXPECT_FALSE(contains(advice_of(other, kGiven), "clocks"));
+    EXPECT_TRUE(contains(advice_of(other, kGiven), "contradicts time too"));
     // The right pose is the inverse of the error times the given one.
     EXPECT_TRUE(contains(advice_of(with_error(kHandEyeShift, 0.005), kGiven), "-5.000"));
 }
