@@ -3,6 +3,8 @@
 #include "apps/data_set/bop_ground_truth.hpp"
 #include "apps/data_set/result_csv.hpp"
 #include "apps/part_model/checked_model.hpp"
+#include "apps/set_up/corrected_source.hpp"
+#include "apps/set_up/setup_file.hpp"
 
 namespace nearpose::report {
 namespace {
@@ -23,6 +25,7 @@ void find_inputs(EstimateOptions& estimate, const RunReportOptions& options) {
     require(estimate.scene, "the scene", "say where it is with --scene DIR");
     require(estimate.clouds, "the folder of clouds", "say where it is with --scene DIR");
     require(estimate.camera, "the camera", "put it back");
+    require(estimate.set_up, "the file of the set-up", "put it back");
     require(estimate.model.models, "the folder of models", "say where it is with --models DIR");
     require(estimate.model.model, "the model", "say where it is with --models FILE");
 }
@@ -87,6 +90,9 @@ RunInput read_run(const std::filesystem::path& folder, const RunReportOptions& o
     find_inputs(estimate, options);
     if (!estimate.scene_id) estimate.scene_id = input.record.scene_id;  // whatever its folder is called now
     input.source = open_source(estimate);
+    // The poses are of the corrected recording, and so is what they are drawn over.
+    if (!estimate.set_up.empty())
+        input.source = program::corrected_source(std::move(input.source), program::read_setup_file(estimate.set_up));
     input.frame_in_source = match_frames(input, log);
     input.mesh =
         program::load_checked_model(model_file(estimate.model), model_unit(estimate.model), estimate.model.keep_largest)
